@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The files of a texture that is made anew; payloads of sealed files.
+// The files of a texture that is baked anew; payloads of sealed files.
 // Scene, kind "BAKE", version 1:
 //   texture size u32 | margin u32 | spacing f64 | reach f64 |
 //   parts u32 x (box 6 x f64 | file | boundary vertices u32) | seams u32 x (box | section) |
@@ -127,7 +127,7 @@ BakeSurface decode_bake_surface(std::string_view bytes, std::string_view what) {
   surface.uvs = in.get_array<CornerUvs>(triangles);
   for (const CornerUvs& corners : surface.uvs) {
     for (const Uv& uv : corners) {
-      // What is far from the picture would take for ever to paint.
+      // Painting something far outside the picture would take for ever.
       const auto fits = [](float x) { return x >= 0 && x <= 1; };
       if (!fits(uv[0]) || !fits(uv[1])) in.fail("texture coordinates beside the picture");
     }

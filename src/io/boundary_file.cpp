@@ -6,7 +6,7 @@
 //   for each region of the parts (regions.hpp): its triangles u64 | their checksum u64 |
 //   triangles x (3 x (part u32 | local index u32) | label u32, if all have one |
 //   texture coordinates 6 x f32, if all have them)
-// What stands before the triangles is the index. Version 1 had the count of triangles alone.
+// Everything before the triangles is the index. Version 1 had only the count of triangles.
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -31,7 +31,7 @@ constexpr std::uint32_t k_boundary_version = 2;
 constexpr std::uint32_t k_boundary_labels = 1;
 constexpr std::uint32_t k_boundary_uvs = 2;
 
-/// What the index begins with.
+/// The start of the index.
 struct Head {
   std::uint64_t triangles = 0;
   std::uint32_t parts = 0;
@@ -84,7 +84,7 @@ std::string encode_triangles(std::span<const BoundaryTriangle> triangles,
   return out.take();
 }
 
-/// The entries tell of all triangles.
+/// Checks that the entries account for all triangles.
 void check_entries(const Head& head, std::span<const BoundaryRegion> entries,
                    std::string_view what) {
   std::uint64_t left = head.triangles;
@@ -98,7 +98,8 @@ void check_entries(const Head& head, std::span<const BoundaryRegion> entries,
   }
 }
 
-/// Of triangles one after the other: neighbours mostly lie between the same parts.
+/// The region of a triangle. For consecutive triangles: neighbours mostly lie between the same
+/// parts.
 class RegionOf {
  public:
   explicit RegionOf(std::uint32_t parts) : regions_(parts) {}
@@ -126,7 +127,7 @@ BoundaryTriangle sorted_corners(BoundaryTriangle t) {
   return t;
 }
 
-/// Of the corners in any order.
+/// Independent of the order of the corners.
 std::uint64_t hash_of(const BoundaryTriangle& t) {
   std::uint64_t hash = 0;
   for (const BoundaryCorner& each : t) {
@@ -137,7 +138,7 @@ std::uint64_t hash_of(const BoundaryTriangle& t) {
   return hash ^ hash >> 32;
 }
 
-/// Tells of triangles whether one with the same corners, in any order, was added before.
+/// Finds out whether a triangle with the same corners, in any order, was already added.
 class KnownTriangles {
  public:
   explicit KnownTriangles(std::span<const BoundaryTriangle> all) : all_(all) {
@@ -145,7 +146,7 @@ class KnownTriangles {
       throw DataError("2^32 boundary triangles or more");
     }
   }
-  /// None is known; at most so many will be added.
+  /// Forgets all; at most `most` will be added.
   void begin(std::size_t most) { slots_.assign(std::bit_ceil(2 * most + 1), {}); }
   /// Whether the triangle is new.
   bool add(std::size_t place) {
@@ -164,8 +165,8 @@ class KnownTriangles {
 
  private:
   struct Slot {
-    std::uint32_t hash = 0;   // tells most others without a look at their corners
-    std::uint32_t place = 0;  // 1 + it
+    std::uint32_t hash = 0;   // tells most others apart without comparing their corners
+    std::uint32_t place = 0;  // 1 + the index of the triangle
   };
   std::span<const BoundaryTriangle> all_;
   std::vector<Slot> slots_;
@@ -214,7 +215,7 @@ std::uint64_t order_by_region(std::uint32_t parts, std::vector<BoundaryTriangle>
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     order[end[region[i]]++] = static_cast<std::uint32_t>(i);
   }
-  // Copies are of one region: a table of its triangles stays in the processor's cache.
+  // Duplicates have the same region: a table of its triangles stays in the processor's cache.
   KnownTriangles known(triangles);
   std::vector<BoundaryTriangle> ordered;
   TriangleColumns columns_ordered;

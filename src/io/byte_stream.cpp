@@ -15,7 +15,7 @@
 namespace meshfarm {
 namespace {
 
-/// Slides over a plain file, in the memory of one window.
+/// Slides over a plain file; holds one window in memory.
 class PlainStream final : public ByteStream {
  public:
   explicit PlainStream(const InputFile& file)
@@ -50,7 +50,7 @@ class PlainStream final : public ByteStream {
   static constexpr std::size_t k_step_bytes = std::size_t{256} << 10;  // stays in the near caches
   const InputFile& file_;
   std::unique_ptr<char[]> buffer_;
-  std::uint64_t read_ = 0;  // up to here in the file
+  std::uint64_t read_ = 0;  // the position in the file up to which it was read
 };
 
 Compression compression_of(std::string_view bytes) {
@@ -64,7 +64,7 @@ InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path_, error);
   if (std::filesystem::is_directory(status)) throw IoError("cannot read", path_, EISDIR);
-  // To open a pipe would wait for its writer, perhaps for ever, and it cannot be read twice.
+  // Opening a pipe would wait for its writer, perhaps for ever, and it cannot be read twice.
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     throw DataError(path_.string() + ": not a regular file; a mesh is read more than once");
   }

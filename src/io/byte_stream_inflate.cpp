@@ -101,7 +101,7 @@ class InflatedStream final : public ByteStream {
       if (!read_error_) return got > 0 ? static_cast<std::size_t>(got) : 0;
     } catch (const std::bad_alloc&) {
       throw;
-    } catch (const std::exception&) {  // the filters' own words say nothing to a user
+    } catch (const std::exception&) {  // the filters' messages mean nothing to a user
       if (read_error_) std::rethrow_exception(read_error_);
       throw DataError(path_.string() + ": the " + std::string(name_of(compression_)) +
                       " data is corrupt or truncated, somewhere after byte " +

@@ -7,7 +7,7 @@
 namespace meshfarm {
 
 /// The decompressed bytes of `file`, which must outlive the stream. Damage throws DataError naming
-/// the file and how far decompression came.
+/// the file and how far decompression got.
 std::unique_ptr<ByteStream> open_compressed(const InputFile& file);
 
 }  // namespace meshfarm

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Zstandard frames, as far as RFC 8878 (section 3.1) is needed to find where one ends:
+// Zstandard frames: the part of RFC 8878 (section 3.1) that is needed to find the end of one:
 //   frame     = 0xFD2FB528 descriptor [window] [dictionary id] [content size] block* [checksum]
 //   block     = 3 bytes: last (1 bit), type (2 bits), size (21 bits); then the content
 //   skippable = 0x184D2A50..5F, a 4-byte size, then as many bytes
@@ -38,7 +38,7 @@ std::size_t frame_header_bytes(std::uint8_t descriptor) {
   return size;
 }
 
-/// Up to `count` bytes of the file at `offset`: fewer if it ends before.
+/// Up to `count` bytes of the file at `offset`; fewer if it ends before.
 std::string bytes_at(const InputFile& file, std::uint64_t offset, std::size_t count) {
   if (offset >= file.size()) return {};
   std::string bytes(std::min<std::uint64_t>(count, file.size() - offset), '\0');
@@ -46,7 +46,7 @@ std::string bytes_at(const InputFile& file, std::uint64_t offset, std::size_t co
   return bytes;
 }
 
-/// Where the data frame at `start` ends, by its blocks' headers.
+/// The end of the data frame at `start`, from the headers of its blocks.
 std::optional<std::uint64_t> end_of_data_frame(const InputFile& file, std::uint64_t start) {
   const std::string head = bytes_at(file, start, 5);
   if (head.size() < 5) return std::nullopt;
@@ -63,7 +63,7 @@ std::optional<std::uint64_t> end_of_data_frame(const InputFile& file, std::uint6
   return offset + ((descriptor & 4) != 0 ? 4 : 0);
 }
 
-/// Where the frame at `start` ends; nothing if the file ends before.
+/// The end of the frame at `start`; nothing if the file ends before.
 std::optional<std::uint64_t> end_of_frame(const InputFile& file, std::uint64_t start) {
   const std::string head = bytes_at(file, start, 8);
   const bool skippable = (load(head, 4) & ~0xFu) == k_skippable_magic;

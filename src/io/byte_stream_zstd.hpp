@@ -11,8 +11,8 @@ namespace meshfarm {
 /// Whether the bytes start like a zstd file.
 bool is_zstd(std::string_view bytes);
 
-/// Throws DataError unless the last frame is whole: the decompressor at hand takes a file that is
-/// cut off for one that ends. Reads the blocks' headers only.
+/// Throws DataError unless the last frame is whole: the decompressor used here takes a truncated
+/// file for a complete one. Reads only the blocks' headers.
 void check_zstd_frames(const InputFile& file);
 
 }  // namespace meshfarm

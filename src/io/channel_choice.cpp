@@ -10,7 +10,7 @@
 namespace meshfarm {
 namespace {
 
-/// What stands for texture coordinates.
+/// The name that stands for texture coordinates.
 constexpr std::string_view k_word_uvs = "uvs";
 
 /// Whether the user's name means this channel.
@@ -52,7 +52,7 @@ class ChosenChannels : public MeshSource {
   }
 
   const MeshFileInfo& info() const override {
-    info_.positions = source_->info().positions;  // what a scan may change
+    info_.positions = source_->info().positions;  // may be changed by a scan
     return info_;
   }
   void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) override {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The channels' file, version 1: blocks, one after the other, each sealed (staging/sealed.hpp) as
-// kind "CHAN". The manifest tells the channels, the positions' type and how many points there are.
+// The channels' file, version 1: consecutive blocks, each sealed (staging/sealed.hpp) as kind
+// "CHAN". The manifest has the channels, the type of the positions and the number of points.
 //   block = points u32, 65536 but in the last block | positions, 3 numbers a point
 //           | the values of each channel by itself, in its type
 #include <algorithm>
@@ -31,7 +31,7 @@ void put_values(ByteWriter& out, std::span<const float> values, std::size_t firs
   for (; first < values.size(); first += step) out.put(static_cast<T>(values[first]));
 }
 
-/// Of one channel.
+/// Appends the values of one channel.
 void put_values(ByteWriter& out, ChannelType type, std::span<const float> values,
                 std::size_t channel, std::size_t channels) {
   switch (type) {
@@ -76,8 +76,8 @@ std::string encode_block(std::span<const Vec3> points, std::span<const float> va
   return seal(k_channel_kind, k_channel_version, out.bytes());
 }
 
-/// Fills blocks, all but the last, whatever the batches in which the points come: the file is to be
-/// the same from any number of threads.
+/// Fills every block but the last, whatever the batches of points are: the file must be the same
+/// with any number of threads.
 class BlockWriter {
  public:
   BlockWriter(StagedWriter& file, const StagedChannels& staged, PositionType positions)
@@ -95,7 +95,7 @@ class BlockWriter {
     }
   }
 
-  /// The block that is not full.
+  /// Writes the current block, which may not be full.
   void finish() {
     if (points_.empty()) return;
     file_.write(encode_block(points_, values_, channels_, positions_));

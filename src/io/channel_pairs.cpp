@@ -47,7 +47,7 @@ ChannelPairs pair_channels(std::span<const Channel> a, std::span<const Channel> 
   if (normals && normal_columns(b)) add("normals", ChannelRole::normal, *normals);
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (is_paired[i] || !place_of(a[i], b)) continue;
-    // A component alone is no direction.
+    // A single component is no direction.
     const bool is_number = a[i].role == ChannelRole::normal;
     add(a[i].name, is_number ? ChannelRole::quality : a[i].role, {&i, 1});
   }

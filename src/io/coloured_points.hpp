@@ -13,20 +13,20 @@
 
 namespace meshfarm {
 
-/// Points with the colours of textures: in the channels of colours that they have, or else in ones
-/// after all others, where white is what no texture covers.
+/// Points with the colours of textures: in their colour channels, if they have these, or else in
+/// added channels after all others, where white stands for points that no texture covers.
 class ColouredPoints {
  public:
   /// `textures` must outlive this.
   ColouredPoints(std::vector<Channel> channels, TextureColours& textures);
 
   const std::vector<Channel>& channels() const { return channels_; }
-  /// Good until the next call. `first`: the number of the batch's first vertex.
+  /// Valid until the next call. `first`: the index of the batch's first vertex.
   const ChannelPoints& of(const ChannelPoints& batch, std::uint64_t first);
 
  private:
   std::vector<Channel> channels_;
-  std::size_t added_ = 0;  // of them
+  std::size_t added_ = 0;  // to these
   std::array<std::size_t, 3> columns_{};
   TextureColours& textures_;
   ChannelPoints made_;

@@ -10,7 +10,7 @@
 namespace meshfarm {
 namespace {
 
-/// Which vertices have no position. Takes no memory before the first of them.
+/// The vertices that have no position. Uses no memory before the first of them.
 class WithoutPosition {
  public:
   void add(std::uint64_t first, std::span<const Vec3> batch) {
@@ -85,7 +85,7 @@ class Conversion {
     } while (source_.info().positions != made_.positions);
   }
 
-  /// Of the triangles whose vertices all have positions.
+  /// Shows only triangles whose vertices all have positions.
   void scan_triangles(const std::function<void(const TriangleView&)>& take) {
     dropped_ = 0;
     source_.scan_triangles([&](const TriangleView& batch) {
@@ -103,7 +103,7 @@ class Conversion {
     });
   }
 
-  /// All is scanned twice. Polygons have more triangles than faces, so it is a guess.
+  /// Everything is scanned twice. It is an estimate, as polygons have more triangles than faces.
   void tell(std::size_t more) {
     done_ += more;
     const MeshFileInfo& info = source_.info();
@@ -116,7 +116,7 @@ class Conversion {
   Converted made_;
   WithoutPosition without_;
   std::vector<WideTriangle> kept_;  // of a batch
-  TriangleColumns kept_columns_;    // of these
+  TriangleColumns kept_columns_;    // and their columns
   std::uint64_t dropped_ = 0;
   std::uint64_t done_ = 0;
 };

@@ -13,15 +13,15 @@
 
 namespace meshfarm {
 
-/// The texture coordinates that each vertex has in its triangles, each once, and a number that its
-/// user gives to it. Kept in up to 96 MB of memory, or in scratch files: 8 bytes a vertex and 24 a
-/// wedge. (At a vertex with very many wedges one may come more than once.)
+/// The distinct texture coordinates that each vertex has in its triangles, each with a number that
+/// the user chooses. Kept in up to 96 MB of memory, or in scratch files: 8 bytes per vertex and 24
+/// per wedge. (At a vertex with very many wedges, one may occur more than once.)
 class CornerWedges {
  public:
-  /// For so many vertices. Throws IoError.
+  /// For this number of vertices. Throws IoError.
   explicit CornerWedges(std::uint64_t vertices) : newest_(vertices) {}
 
-  /// The wedge's number. A new one is what `make(is_first)` says: whether the vertex has no other.
+  /// The wedge's number. That of a new one is `make(is_first)`: whether it is the vertex's first.
   template <class Make>
   std::uint64_t number_of(std::uint64_t vertex, Uv uv, const Make& make) {
     std::uint64_t& newest = newest_.items()[vertex];
@@ -45,13 +45,13 @@ class CornerWedges {
   struct Wedge {
     std::uint64_t uv_bits = 0;
     std::uint64_t number = 0;
-    std::uint64_t next = 0;  // of the same vertex; from 1, 0 is none
+    std::uint64_t next = 0;  // of the same vertex: 1 + its index, or 0
   };
-  ScratchArray<std::uint64_t> newest_;  // of each vertex, as above
+  ScratchArray<std::uint64_t> newest_;  // of each vertex, as `next`
   ScratchList<Wedge> wedges_;
 };
 
-/// What every format can hold: no number is 0.
+/// Makes texture coordinates that every format can hold: what is not finite becomes 0.
 inline Uv finite_uv(Uv uv) {
   for (float& x : uv) {
     if (!std::isfinite(x)) x = 0;

@@ -12,8 +12,8 @@
 
 namespace meshfarm {
 
-/// The faces that a thread has read of its piece, to hand them on to a TriangleMaker later, and
-/// where their labels change.
+/// The faces that a thread has read from its piece, kept for a TriangleMaker, and where their
+/// labels change.
 class FaceList {
  public:
   void clear() {
@@ -23,7 +23,8 @@ class FaceList {
     uvs_.clear();
     corner_uvs_.clear();
   }
-  /// Corners are checked. Either all faces have texture coordinates, one a corner, or none has.
+  /// The corners must be valid. Either all faces have texture coordinates, one per corner, or none
+  /// has.
   void add(std::span<const std::uint64_t> corners, std::span<const Uv> uvs = {}) {
     if (corners.size() == 3) {
       if (!uvs.empty()) uvs_.push_back({uvs[0], uvs[1], uvs[2]});
@@ -34,7 +35,7 @@ class FaceList {
       corner_uvs_.insert(corner_uvs_.end(), uvs.begin(), uvs.end());
     }
   }
-  /// Of the faces that follow.
+  /// The label of the faces that follow.
   void label(Label label) {
     others_.push_back({.triangles_before = triangles_.size(), .label = label});
   }
@@ -62,7 +63,7 @@ class FaceList {
   struct Other {
     std::size_t triangles_before = 0;
     std::size_t corners = 0;
-    std::optional<Label> label = {};  // which is no face then
+    std::optional<Label> label = {};  // if set, this is no face
   };
   void play_triangles(std::size_t first, std::size_t end, TriangleBatch& batch) const {
     if (uvs_.empty()) {
@@ -74,9 +75,9 @@ class FaceList {
 
   std::vector<WideTriangle> triangles_;
   std::vector<Other> others_;
-  std::vector<std::uint64_t> corners_;  // of those
+  std::vector<std::uint64_t> corners_;  // of the others
   std::vector<CornerUvs> uvs_;          // of the triangles
-  std::vector<Uv> corner_uvs_;          // of the others' corners
+  std::vector<Uv> corner_uvs_;          // of the corners of the others
 };
 
 }  // namespace meshfarm

@@ -12,14 +12,15 @@
 
 namespace meshfarm {
 
-/// The path, if a file can be made there: fails before the work, not after it. Throws IoError.
+/// Returns the path if a file can be created there; so it fails before the work, not after it.
+/// Throws IoError.
 const std::filesystem::path& checked_output(const std::filesystem::path& path);
 
-/// What the writers of all formats share: the file, its checks, and the counts. A format only
-/// encodes.
+/// The common part of the writers of all formats: the file, its checks, and the counts. A format
+/// only encodes.
 class FileSink : public MeshSink {
  public:
-  /// Throws IoError if the file cannot be made, UsageError for a comment of more than a line.
+  /// Throws IoError if the file cannot be created, UsageError for a comment of more than one line.
   FileSink(const std::filesystem::path& path, const MeshSinkOptions& options);
 
   void vertices(std::span<const Vec3> batch) final;
@@ -29,23 +30,24 @@ class FileSink : public MeshSink {
   void commit() final;
 
  protected:
-  /// Of checked counts and indices, k_most_at_once at most.
-  /// Formats that have no place for the channels' values, or for columns, leave them out.
+  /// Get checked counts and indices, at most k_most_at_once at a time. Formats that have no place
+  /// for the channels' values, or for columns, leave them out.
   virtual void put(std::span<const Vec3> batch, std::span<const float> values) = 0;
   virtual void put(const TriangleView& batch) = 0;
-  /// When all is put.
+  /// Called after the last put().
   virtual void finish() {}
 
   static constexpr std::size_t k_most_at_once = 8192;
   const std::filesystem::path& path() const { return path_; }
   const MeshSinkOptions& options() const { return options_; }
   void write(std::string_view bytes) { file_.write(bytes); }
-  /// What is written is on the disk then.
+  /// Afterwards, what was written is on the disk.
   void sync() { file_.sync(); }
-  /// Of a file that comes after others which it names: one that is there already must not be found
-  /// with the new ones. It goes when what is written is on the disk, and only renaming is left.
+  /// For a file that is committed after other files which it names: an old file of its name must
+  /// not be found together with these new ones. It is removed once what was written is on the disk
+  /// and only renaming is left.
   void make_way();
-  /// In the place of bytes that were written before.
+  /// Replaces bytes that were written before.
   void overwrite(std::uint64_t offset, std::string_view bytes) { file_.overwrite(offset, bytes); }
 
  private:

@@ -28,7 +28,7 @@ bool is_same_but_case(std::string_view a, std::string_view b) {
                     [](char x, char y) { return lower(x) == lower(y); });
 }
 
-/// The first by name of the files that are called so but for the case of letters.
+/// The first, by name, of the files with this name in any case of letters.
 std::optional<fs::path> find_in_any_case(const fs::path& path) {
   const std::string wanted = path.filename().string();
   std::optional<fs::path> found;

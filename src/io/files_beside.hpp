@@ -10,19 +10,19 @@
 
 namespace meshfarm {
 
-/// Whether it names a file in this folder or below it.
+/// Whether the path names a file in this folder or below it.
 bool is_beneath(const std::filesystem::path& path);
 
-/// The file that a mesh's or a material's text names, in this folder or below it: its path as it
-/// stands there, with either kind of slash, or else its name alone; in any case of letters if
-/// there is none of its own. So files from other systems are found.
+/// The file, in this folder or below it, that a mesh's or a material's text names: first by the
+/// path as written, with either kind of slash, then by its last component; if there is no exact
+/// match, in any case of letters. So files from other systems are found.
 std::optional<std::filesystem::path> find_beside(const std::filesystem::path& folder,
                                                  std::string_view name);
 
-/// The most bytes of a picture beside a mesh.
+/// The maximum size of a picture beside a mesh, in bytes.
 inline constexpr std::uint64_t k_most_picture_file = std::uint64_t{1} << 30;
 
-/// All bytes of a regular file of no more than `most_bytes`. Throws IoError, or DataError.
+/// All bytes of a regular file of at most `most_bytes`. Throws IoError, or DataError.
 std::string read_beside(const std::filesystem::path& path,
                         std::uint64_t most_bytes = k_most_picture_file);
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is made, all of it little endian:
+// The output, all of it little endian:
 //   "glTF", uint32 2, uint32 length of all
 //   uint32 length, "JSON", the document and blanks
 //   uint32 length, "BIN\0", { stream }, zeros up to a multiple of 4, { image }
-// A stream is what a buffer view is compressed to: of positions, normals, colours, texture
-// coordinates and indices. Images are as they are, and who writes them adds them.
-// The views lie in a second buffer, which is in no file.
+// A stream is a compressed buffer view: of positions, normals, colours, texture coordinates or
+// indices. Images are stored as they are; the caller appends them. The uncompressed views lie in a
+// second buffer, which is in no file.
 #include "glb_compressed.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::uint64_t k_most_compressed_bytes = std::uint64_t{256} << 20;
 constexpr unsigned k_short_bits = 16;
 constexpr std::size_t k_short_uv_bytes = 2 * sizeof(std::uint16_t);
-constexpr std::uint32_t k_longest_side = 16'384;  // of which 16 bits are an eighth of a texel
+constexpr std::uint32_t k_longest_side = 16'384;  // 16 bits are exact to an eighth of a texel
 constexpr int k_int8 = 5120;
 constexpr int k_gl_uint16 = 5123;
 constexpr const char* k_compression = "EXT_meshopt_compression";
@@ -58,7 +58,7 @@ class PlainMesh {
                 sizeof made);
     return made;
   }
-  /// One attribute of all vertices, without what is between.
+  /// One attribute of all vertices, without gaps.
   std::string column(std::size_t offset, std::size_t bytes) const {
     std::string made(layout_.vertices * bytes, '\0');
     for (std::uint64_t v = 0; v < layout_.vertices; ++v) {
@@ -82,7 +82,7 @@ class PlainMesh {
   std::string bytes_;
 };
 
-/// Places that are a step of 2^exponent apart.
+/// Points that are a step of 2^exponent apart.
 struct Lattice {
   int exponent = 0;
   std::array<double, 3> origin{};
@@ -98,9 +98,9 @@ struct Lattice {
   }
 };
 
-/// The finest on which the bounds are so many steps apart at most, if there is any.
+/// The finest lattice that spans the bounds with at most `most_steps` steps, if there is one.
 std::optional<Lattice> lattice_over(const GltfBounds& bounds, std::uint32_t most_steps) {
-  constexpr int k_greatest_exponent = 100;  // that EXT_meshopt_compression allows
+  constexpr int k_greatest_exponent = 100;  // EXT_meshopt_compression allows no more
   std::array<double, 3> lo = bounds.lo;
   std::array<double, 3> hi = bounds.hi;
   double extent = 0;
@@ -125,8 +125,8 @@ std::optional<Lattice> lattice_over(const GltfBounds& bounds, std::uint32_t most
   return std::nullopt;
 }
 
-/// Whether on the lattice no triangle loses its area or turns over, and ninety-nine of a hundred
-/// are ten steps high: their least height tells.
+/// Whether no triangle loses its area or turns over on the lattice, and at most 1 % of the
+/// triangles have a least height below ten steps.
 bool is_fine(const Lattice& lattice, const PlainMesh& mesh, Vec3 shift,
              std::span<const std::uint32_t> indices) {
   constexpr double k_steps = 10;
@@ -151,7 +151,7 @@ bool is_fine(const Lattice& lattice, const PlainMesh& mesh, Vec3 shift,
   return true;
 }
 
-/// The bytes of a .glb and what its document says of them.
+/// Builds the bytes of a .glb and its document.
 class Packer {
  public:
   Packer(const GltfLayout& layout, const GltfBounds& bounds, const GltfWords& words)
@@ -193,8 +193,8 @@ class Packer {
     add_vertices(mesh.column(0, 12), 12);
   }
 
-  /// Places on the lattice: as 16 bits, which the node scales, or as what the codec makes floats
-  /// of, 24 bits and an exponent.
+  /// Positions on the lattice: as 16 bits, scaled by the node, or as 24 bits and an exponent, which
+  /// the codec decodes to floats.
   template <class Word>
   void add_places(const PlainMesh& mesh, Vec3 shift, const char* filter) {
     is_scaled_ = sizeof(Word) == 2;
@@ -251,7 +251,7 @@ class Packer {
     add_vertices(mesh.column(layout_.colour_at(), layout_.colour_bytes), layout_.colour_bytes);
   }
 
-  /// With 16 bits where these are fine enough.
+  /// With 16 bits where that is fine enough.
   void add_uvs(const PlainMesh& mesh) {
     bool is_fine = std::all_of(words_.images.begin(), words_.images.end(),
                                [](const auto& image) { return image.side <= k_longest_side; });
@@ -287,7 +287,7 @@ class Packer {
     view["target"] = 34962;
   }
 
-  /// The one view of all accessors that are of indices.
+  /// The single view for all accessors of indices.
   void add_indices(std::span<const std::uint32_t> indices) {
     meshopt_encodeIndexVersion(1);
     std::vector<unsigned char> made(
@@ -323,7 +323,7 @@ class Packer {
     return document_["bufferViews"].back();
   }
 
-  /// Behind all streams. Returns where the last ends.
+  /// Places the images after all streams. Returns the end of the last.
   std::uint64_t add_images() {
     std::uint64_t end = binary_.size();
     std::uint64_t next = end;
@@ -379,7 +379,7 @@ class Packer {
   const GltfWords& words_;
   Json document_;
   std::optional<Lattice> lattice_;
-  bool is_scaled_ = false;  // the lattice is the node's, not of the floats
+  bool is_scaled_ = false;  // the node scales the lattice's positions; else they are floats
   std::string binary_;
   std::uint64_t unpacked_ = 0;  // bytes of all views
 };

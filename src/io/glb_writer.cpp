@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is written, all of it little endian:
+// The output, all of it little endian:
 //   "glTF", uint32 2, uint32 length of all
 //   uint32 length, "JSON", the document and blanks
 //   uint32 length, "BIN\0", { vertex }, { triangle }, zeros up to a multiple of 4, { image }
 //   vertex, triangle and image are as gltf_document.hpp has them
-// Of a .gltf they are a file beside it, and the document is the .gltf.
-// The translation and the bounds are known at the end: the document of a .glb is written again
-// then, into the place that its longest form would take. Where triangles have columns nothing is
-// written before the end, and what comes is kept.
+// For a .gltf, these are a file beside it, and the document is the .gltf. The translation and the
+// bounds are known only at the end: the document of a .glb is then rewritten in place, with room
+// for its longest form. Where triangles have columns, nothing is written before the end, and all
+// input is kept.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -41,7 +41,7 @@ constexpr std::uint64_t k_most_glb_bytes = UINT32_MAX;
 constexpr std::uint64_t k_most_for_viewers = std::uint64_t{1} << 31;
 constexpr std::uint64_t k_most_items = std::uint64_t{1} << 32;  // products fit 64 bits
 
-/// The longest that it can become.
+/// The greatest length that it can have.
 std::uint64_t document_bytes(const GltfLayout& layout, const MeshSinkOptions& options) {
   constexpr double k_longest = std::numeric_limits<double>::lowest();
   const Numbers longest{k_longest, k_longest, k_longest};
@@ -56,7 +56,7 @@ void warn_of_viewers(const std::filesystem::path& path, std::uint64_t bytes) {
               ": a glTF of more than 2 GiB is written; many programs cannot open it");
 }
 
-/// The length of the file, checked.
+/// The length of the file. Throws if it is too large.
 std::uint64_t checked_glb_bytes(const std::filesystem::path& path, const MeshSinkOptions& options) {
   const GltfLayout layout(options);
   const bool is_counted = options.vertices < k_most_items && options.triangles < k_most_items;
@@ -88,7 +88,7 @@ const MeshSinkOptions& checked_gltf(const std::filesystem::path& path,
   return options;
 }
 
-/// As a URI has it: all but letters, digits and a few marks as "%20".
+/// Encoded as in a URI: all but letters, digits and a few marks as "%20".
 std::string percent_encoded(std::string_view text) {
   constexpr std::string_view k_digits = "0123456789ABCDEF";
   constexpr std::string_view k_marks = "-._~";
@@ -117,7 +117,8 @@ class GlbSink final : public GltfEncoder {
   }
 
  private:
-  /// All that is before the vertices. The document is padded, and so is the length of the binary.
+  /// Writes all that precedes the vertices. The document must be padded, and the binary's length,
+  /// too.
   void begin(std::string_view document, std::uint64_t binary) {
     const bool has_binary = layout().vertices > 0;
     const std::uint64_t bytes = k_json_at + document.size() + (has_binary ? 8 + binary : 0);
@@ -207,7 +208,7 @@ class GltfSink final : public GltfEncoder {
  private:
   void write_body(std::string_view bytes) override { binary_.write(bytes); }
 
-  /// The document is the last to come.
+  /// The document is written last.
   void finish() override {
     GltfWords all = words(percent_encoded(binary_path_.filename().native()));
     for (GltfImage& image : all.images) {

@@ -16,20 +16,21 @@
 
 namespace meshfarm {
 
-/// Bytes that can be read from anywhere, as often as wanted.
+/// Bytes with random access, which can be read any number of times.
 struct GltfBuffer {
   std::uint64_t size = 0;
-  /// Within the size. Throws IoError, and DataError if the file has become shorter.
+  /// The range must lie within the size. Throws IoError, and DataError if the file has become
+  /// shorter.
   std::function<void(std::uint64_t offset, std::span<char> out)> read;
 };
 
-/// Of bytes in memory, and of those of a scratch file from `start` on.
+/// From bytes in memory, and from those of a scratch file from `start` on.
 GltfBuffer buffer_in_memory(std::string bytes);
 GltfBuffer buffer_in_scratch(std::shared_ptr<const ScratchFile> scratch, std::uint64_t start,
                              std::uint64_t size);
 
-/// Keeps bytes: the first 16 MiB in memory, all that is more in one scratch file without a name in
-/// $TMPDIR (or /tmp).
+/// Keeps bytes: the first 16 MiB in memory, the rest in one scratch file without a name in $TMPDIR
+/// (or /tmp).
 class GltfStore {
  public:
   /// Throws IoError.
@@ -41,7 +42,7 @@ class GltfStore {
   std::shared_ptr<const ScratchFile> scratch_;
 };
 
-/// Files of which those that were read last are open.
+/// Keeps the files open that were read last.
 class GltfFiles {
  public:
   static constexpr std::size_t k_most_open = 8;
@@ -50,11 +51,11 @@ class GltfFiles {
   std::shared_ptr<const InputFile> open(const std::filesystem::path& path);
 
  private:
-  std::vector<std::shared_ptr<const InputFile>> open_;  // the last one last
+  std::vector<std::shared_ptr<const InputFile>> open_;  // most recently used last
 };
 
-/// Of a file, which is opened where it must be: at once, and when it is read. It is a DataError if
-/// its size is another one then.
+/// From a file, which is opened now, and again, if need be, when it is read. It is a DataError if
+/// its size has changed by then.
 GltfBuffer buffer_in_file(const std::shared_ptr<GltfFiles>& files,
                           const std::filesystem::path& path);
 

@@ -17,7 +17,7 @@
 namespace meshfarm {
 namespace {
 
-/// Nothing if it is not base64.
+/// Nothing for invalid base64.
 std::optional<std::string> decode_base64(std::string_view text) {
   static constexpr std::string_view k_digits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -43,7 +43,7 @@ std::optional<std::string> decode_base64(std::string_view text) {
   return bytes;
 }
 
-/// The part of a buffer that a view, or what compresses it, names.
+/// The part of a buffer that a view, or its compression extension, names.
 std::shared_ptr<const GltfBuffer> part_of(const std::shared_ptr<const GltfBuffer>& buffer,
                                           const GltfValue& view) {
   const std::uint64_t start = view.whole_or("byteOffset", 0);

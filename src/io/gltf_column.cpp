@@ -147,7 +147,7 @@ GltfColumn open_column(const GltfValue& document, std::uint64_t accessor, GltfBu
 const char* GltfColumnReader::fetch(const GltfColumn& column, std::uint64_t first,
                                     std::size_t rows) {
   if (rows == 0) return bytes_.data();
-  // Of the last row there is no more than the row.
+  // The last row need not be followed by a whole stride.
   bytes_.resize((rows - 1) * column.stride + column.components * size_of(column.type));
   column.buffer->read(column.start + first * column.stride, bytes_);
   return bytes_.data();

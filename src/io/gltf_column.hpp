@@ -17,8 +17,7 @@
 
 namespace meshfarm {
 
-/// An accessor: rows of one to four components, as they lie in a buffer. All of it is inside the
-/// buffer.
+/// An accessor: rows of one to four components, as stored in a buffer. It lies within the buffer.
 struct GltfColumn {
   std::shared_ptr<const GltfBuffer> buffer;
   std::uint64_t start = 0;
@@ -29,17 +28,17 @@ struct GltfColumn {
   bool normalized = false;  // whole numbers that stand for 0 to 1, or -1 to 1
 };
 
-/// Throws DataError for an accessor that does not fit its buffer view, or that view its buffer; and
-/// for one that is sparse or has no buffer view.
+/// Throws DataError for an accessor that does not fit its buffer view, for a view that does not fit
+/// its buffer, and for an accessor that is sparse or has no buffer view.
 GltfColumn open_column(const GltfValue& document, std::uint64_t accessor, GltfBuffers& buffers);
 
-/// Reads rows, in memory that it keeps from one read to the next.
+/// Reads rows, in memory that it reuses.
 class GltfColumnReader {
  public:
   static constexpr std::size_t k_most_rows = 8190;  // a multiple of three: whole triangles
 
-  /// Rows, which must be there: of a column of three components, of one with three or four (then
-  /// the last is left as it is), and of one with whole numbers.
+  /// Read rows, which must exist: of a column of three components, of one with three or four (with
+  /// three, the last is left unchanged), and of one with whole numbers.
   void read(const GltfColumn& column, std::uint64_t first, std::span<Vec3> out);
   void read(const GltfColumn& column, std::uint64_t first, std::span<std::array<double, 4>> out);
   void read(const GltfColumn& column, std::uint64_t first, std::span<std::uint32_t> out);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is read, all of it little endian:
+// The input, all of it little endian:
 //   .glb  = "glTF", uint32 version 2, uint32 length of all, { chunk }
 //   chunk = uint32 length, uint32 type, bytes; the first is the JSON, the next "BIN\0" the binary
 //   .gltf = the JSON alone
@@ -34,7 +34,7 @@ std::uint32_t word(const char* bytes) {
   return load_ply<std::uint32_t, std::endian::little>(bytes);
 }
 
-/// The file as it is once decompressed, read from anywhere.
+/// The decompressed file, with random access.
 GltfBuffer whole_file(const std::shared_ptr<const InputFile>& file) {
   if (file->compression() == Compression::none) {
     return {file->size(),
@@ -42,7 +42,7 @@ GltfBuffer whole_file(const std::shared_ptr<const InputFile>& file) {
   }
   ScratchFile scratch = make_scratch_file();
   const std::unique_ptr<ByteStream> stream = file->open();
-  // No .glb is longer than 4 GiB, whatever else is there.
+  // No .glb is longer than 4 GiB; anything after that is ignored.
   constexpr std::uint64_t k_most_bytes = std::uint64_t{1} << 32;
   for (;;) {
     const std::string_view window = stream->window(ByteStream::k_max_window_bytes);
@@ -145,7 +145,7 @@ bool is_gltf_file(const InputFile& file) {
   std::string_view text = stream->window(k_most_blank);
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
-  // The header of a binary STL may begin with any character.
+  // The header of a binary STL may also begin with this character.
   return first != std::string_view::npos && text[first] == '{' && is_text(text);
 }
 

@@ -34,7 +34,7 @@ class GltfPlaces {
       places_.used(rows.size());
     }
   }
-  /// Whether these are what would be made of them: many primitives may share theirs.
+  /// Whether these were made from the same: many primitives may share theirs.
   bool are_of(const GltfUvs& uvs) const {
     return uvs_.column.buffer == uvs.column.buffer && uvs_.column.start == uvs.column.start &&
            uvs_.column.rows == uvs.column.rows && uvs_.column.stride == uvs.column.stride &&
@@ -60,13 +60,13 @@ class GltfPlaces {
   ScratchArray<Uv> places_;
 };
 
-/// Makes triangles of the corners of a primitive.
+/// Makes triangles from the corners of a primitive.
 class GltfCorners {
  public:
   GltfCorners(const GltfTriangles& triangles, std::uint64_t first, bool is_mirror,
               TriangleBatch& batch)
       : mode_(triangles.mode), first_(first), is_mirror_(is_mirror), batch_(batch) {}
-  /// Triangles have these texture coordinates, which must outlive this.
+  /// The texture coordinates of the triangles; must outlive this.
   void place(GltfPlaces& places) { places_ = &places; }
 
   void add(std::span<const std::uint32_t> vertices) {
@@ -85,7 +85,7 @@ class GltfCorners {
         if (count_ % 3 == 2) put(last_[0], last_[1], vertex);
         break;
       case GltfMode::strip:
-        // Every second one runs the other way round; two equal corners join strips.
+        // Every second one has the opposite orientation; two equal corners join strips.
         if (count_ >= 2 && last_[0] != last_[1] && last_[1] != vertex && last_[0] != vertex) {
           count_ % 2 == 0 ? put(last_[0], last_[1], vertex) : put(last_[1], last_[0], vertex);
         }

@@ -26,7 +26,7 @@ OrderedJson accessor(const GltfLayout& layout, std::size_t offset, int type, con
           {"type", shape}};
 }
 
-/// The accessors of the vertices and what a primitive says of them.
+/// Adds the accessors of the vertices. Returns a primitive's attributes, which name them.
 OrderedJson add_vertices(const GltfLayout& layout, const GltfBounds& bounds,
                          OrderedJson& accessors) {
   OrderedJson attributes = {{"POSITION", 0}};
@@ -53,7 +53,7 @@ OrderedJson add_vertices(const GltfLayout& layout, const GltfBounds& bounds,
   return attributes;
 }
 
-/// Of the indices of triangles.
+/// The accessor of the indices of some triangles.
 OrderedJson index_accessor(const GltfLayout& layout, std::uint64_t first, std::uint64_t count) {
   OrderedJson made = {{"bufferView", 1}};
   if (first > 0) made["byteOffset"] = 3 * first * layout.index_bytes;
@@ -63,7 +63,7 @@ OrderedJson index_accessor(const GltfLayout& layout, std::uint64_t first, std::u
   return made;
 }
 
-/// The primitives, one a part, with their accessors and their materials.
+/// The primitives, one per part, with their accessors and materials.
 OrderedJson add_primitives(const GltfLayout& layout, const GltfWords& words,
                            const OrderedJson& attributes, OrderedJson& document) {
   constexpr std::size_t k_first_image_view = 2;
@@ -103,7 +103,7 @@ void add_mesh(const GltfLayout& layout, const GltfBounds& bounds, const GltfWord
   }
   primitive["material"] = 0;
   document["meshes"] = OrderedJson::array({{{"primitives", OrderedJson::array({primitive})}}});
-  // Else it would be taken for metal, which is black where nothing is around it.
+  // Otherwise it would count as metal, which is black in empty surroundings.
   document["materials"] = OrderedJson::array({{{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}});
   document["accessors"] = accessors;
   if (!words.parts.empty()) {
@@ -150,7 +150,7 @@ GltfLayout::GltfLayout(const MeshSinkOptions& options)
 
 void GltfLayout::set_vertices(std::uint64_t count) {
   vertices = count;
-  index_bytes = vertices <= UINT16_MAX ? 2 : 4;  // the largest number would begin a strip
+  index_bytes = vertices <= UINT16_MAX ? 2 : 4;  // the largest number would restart a strip
 }
 
 std::uint64_t GltfWords::image_bytes() const {

@@ -39,7 +39,7 @@ bool is_read(std::string_view attribute) {
          attribute.starts_with("TEXCOORD_");
 }
 
-/// As glTF numbers the types of components; 0 for what it has not.
+/// The glTF number of a component type; 0 if it has none.
 std::uint64_t component_type(draco::DataType type) {
   switch (type) {
     case draco::DT_INT8:
@@ -81,7 +81,7 @@ void check_count(const GltfValue& accessor, std::uint64_t compressed) {
                 " are compressed for it");
 }
 
-/// How many triangles the bytes tell of, as far as is known before any memory is taken for them.
+/// How many triangles the bytes claim, as far as is known before memory is allocated for them.
 std::optional<std::uint64_t> told_triangles(const GltfValue& extension, const std::string& bytes) {
   draco::DecoderBuffer in;
   in.Init(bytes.data(), bytes.size());
@@ -109,7 +109,7 @@ std::optional<std::uint64_t> told_triangles(const GltfValue& extension, const st
 }
 
 void check_told(const GltfValue& extension, const GltfValue& indices, const std::string& bytes) {
-  constexpr std::uint64_t k_triangles_a_byte = 4096;  // flat grids have some hundreds
+  constexpr std::uint64_t k_triangles_a_byte = 4096;  // flat grids reach a few hundred
   constexpr std::uint64_t k_few = 1 << 20;
   const std::optional<std::uint64_t> told = told_triangles(extension, bytes);
   if (!told) return;
@@ -172,7 +172,7 @@ std::string indices_of(const GltfValue& accessor, const draco::Mesh& mesh) {
   }
 }
 
-/// An attribute that is compressed, and read.
+/// A compressed attribute that is to be read.
 struct Wanted {
   std::uint64_t accessor = 0;
   GltfValue id;
@@ -189,7 +189,7 @@ std::vector<Wanted> wanted_of(const GltfValue& primitive) {
   return wanted;
 }
 
-/// What is left of the free memory is for what this process makes of the rows.
+/// The rest of the free memory is for what this process makes of the rows.
 std::optional<std::uint64_t> decoder_memory() {
   const std::optional<MemoryRoom> room = available_memory();
   if (!room) return std::nullopt;

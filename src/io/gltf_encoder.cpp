@@ -20,7 +20,7 @@ GltfEncoder::GltfEncoder(const std::filesystem::path& path, const MeshSinkOption
       layout_(options),
       buffer_(k_most_at_once * std::max<std::size_t>(layout_.vertex_bytes, 12)) {
   if (!options.labels && !options.uvs) return;
-  // What has no labels is one part.
+  // Without labels, all is one part.
   parts_.emplace(options.labels.value_or(LabelMeaning{"", {Material{}}}), options.triangles);
   kept_.emplace(layout_);
 }
@@ -62,7 +62,7 @@ void GltfEncoder::put(std::span<const Vec3> batch, std::span<const float> values
     out = put_position(p, out);
     if (layout_.normals) out = put_normal(values.first(channels), out);
     if (layout_.colours) out = put_colour(values.first(channels), out);
-    if (layout_.uvs) out = std::fill_n(out, sizeof(Uv), '\0');  // until a triangle has it
+    if (layout_.uvs) out = std::fill_n(out, sizeof(Uv), '\0');  // until a triangle sets it
     values = values.subspan(channels);
   }
   write_up_to(out);
@@ -97,7 +97,7 @@ void GltfEncoder::put_split(const TriangleView& batch) {
 }
 
 /// Doubles are written relative to the first position, so that floats keep their digits; floats
-/// as they are. A vertex without a position, which no triangle has, is put where another is.
+/// unchanged. A vertex without a position, which no triangle uses, is put where another one is.
 void GltfEncoder::begin_positions(std::span<const Vec3> batch) {
   if (filler_) return;
   const auto found = std::find_if(batch.begin(), batch.end(), has_position);
@@ -123,7 +123,7 @@ char* GltfEncoder::put_position(Vec3 p, char* out) {
   return out + sizeof xyz;
 }
 
-/// Of length 1, as glTF has them; what has no length shows up.
+/// Normalised, as glTF demands; one without a length becomes (0, 0, 1).
 char* GltfEncoder::put_normal(std::span<const float> of_vertex, char* out) const {
   const auto& [x, y, z] = *layout_.normals;
   Vec3 normal{of_vertex[x], of_vertex[y], of_vertex[z]};
@@ -149,7 +149,7 @@ char* GltfEncoder::put_colour(std::span<const float> of_vertex, char* out) const
     rgba[i] = static_cast<float>(linear_of_srgb(level((*layout_.colours)[i])));
   }
   if (layout_.alpha) {
-    const double alpha = level(*layout_.alpha);  // in a mesh that is converted it may be no number
+    const double alpha = level(*layout_.alpha);  // may be NaN in a converted mesh
     rgba[3] = alpha > 0 ? static_cast<float>(std::min(alpha, 1.0)) : 0;
   }
   if (layout_.colour_type != ChannelType::uint8) {

@@ -19,20 +19,20 @@
 
 namespace meshfarm {
 
-/// Encodes vertices and triangles; where they go is another's matter.
+/// Encodes vertices and triangles; subclasses write them.
 class GltfEncoder : public FileSink {
  public:
   GltfEncoder(const std::filesystem::path& path, const MeshSinkOptions& options);
 
  protected:
-  /// Whether all is kept until the end: where triangles have columns.
+  /// Whether everything is kept until the end, which is so where triangles have columns.
   bool is_kept() const { return kept_.has_value(); }
-  /// When all is put: what the document says, and the layout is what it will be.
+  /// To be called after the last put(): the document's values. The layout is final from then on.
   GltfWords words(std::string uri = {});
-  /// After that: vertices and triangles, if they are kept.
+  /// After words(): writes the vertices and triangles, if they are kept.
   void write_kept(const std::function<void(std::string_view)>& to);
   const GltfLayout& layout() const { return layout_; }
-  /// When all is put.
+  /// To be called after the last put().
   GltfBounds bounds() const;
 
  private:

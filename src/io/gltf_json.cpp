@@ -11,7 +11,7 @@ namespace {
 
 using Parsed = nlohmann::json;
 
-constexpr double k_most_whole = 9007199254740992.0;  // 2^53: sums of some of them fit 64 bits
+constexpr double k_most_whole = 9007199254740992.0;  // 2^53: sums of a few fit into 64 bits
 
 }  // namespace
 

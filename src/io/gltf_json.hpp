@@ -13,16 +13,16 @@
 
 namespace meshfarm {
 
-/// What "extras" of an accessor of linear colours have: how many bits they have as sRGB, if these
-/// are fewer than the accessor's.
+/// The member of "extras" of an accessor of linear colours: how many bits they have as sRGB, if
+/// fewer than the accessor's.
 inline constexpr const char* k_srgb_bits_extra = "srgbBits";
 
-/// Parses a glTF document, the text of which begins at byte `start` of the file `path`. Throws
-/// DataError for what is no JSON, and for arrays and objects in each other deeper than any glTF.
+/// Parses a glTF document whose text begins at byte `start` of the file `path`. Throws DataError
+/// for invalid JSON, and for arrays and objects nested deeper than in any glTF.
 nlohmann::json parse_gltf_json(std::string_view text, std::uint64_t start, const std::string& path);
 
-/// A value of a glTF document and where it stands: "m.glb: accessors[3].count". What is not as it
-/// must be is a DataError that begins with the place. The document must outlive this.
+/// A value of a glTF document and its place: "m.glb: accessors[3].count". An invalid value is a
+/// DataError that begins with the place. The document must outlive this.
 class GltfValue {
  public:
   GltfValue(const nlohmann::json& value, std::string place)
@@ -31,7 +31,7 @@ class GltfValue {
   /// A member of this object.
   GltfValue at(std::string_view name) const;
   std::optional<GltfValue> find(std::string_view name) const;
-  /// Of this array; a member that is absent has none.
+  /// The size of this array; that of an absent member is 0.
   std::size_t size() const;
   std::size_t size_of(std::string_view name) const;
   GltfValue item(std::uint64_t index) const;
@@ -42,7 +42,7 @@ class GltfValue {
   bool flag(std::string_view name) const;  // false if absent
   const std::string& text() const;
   const nlohmann::json& json() const { return *value_; }
-  /// Without a blank at its end.
+  /// Without a trailing blank.
   std::string place() const;
 
   [[noreturn]] void fail(const std::string& why) const;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is read of a material: baseColorTexture, or with KHR_materials_pbrSpecularGlossiness
-// diffuseTexture; metallicRoughnessTexture, normalTexture, occlusionTexture, and emissiveTexture
-// where emissiveFactor lets it shine; KHR_texture_transform.
+// The parts of a material that are read: baseColorTexture, or with
+// KHR_materials_pbrSpecularGlossiness diffuseTexture; metallicRoughnessTexture, normalTexture,
+// occlusionTexture, and emissiveTexture where emissiveFactor is not zero; KHR_texture_transform.
 #include "gltf_maps.hpp"
 
 #include <algorithm>
@@ -60,7 +60,7 @@ class ImageKeeper {
   }
 
  private:
-  /// Gives a material its maps. Returns how they lie; nothing if it has none.
+  /// Gives a material its maps. Returns their placement; nothing if it has none.
   std::optional<GltfTexture> read_material(std::uint64_t number, Material& material) {
     const GltfValue value = document_.at("materials").item(number);
     std::optional<GltfTexture> first;
@@ -108,7 +108,7 @@ class ImageKeeper {
     try {
       const std::shared_ptr<const GltfBuffer> file = open_gltf_image(document_, buffers_, image);
       made.load = [file] { return read_gltf_image(*file); };
-    } catch (const Error& error) {  // the same as if it could not be read
+    } catch (const Error& error) {  // treated like a picture that cannot be read
       made.load = [why = std::string(error.what())]() -> std::string { throw DataError(why); };
     }
     const std::optional<GltfValue> uri = image.find("uri");
@@ -144,7 +144,7 @@ GltfMaps keep_gltf_maps(const GltfValue& document, GltfBuffers& buffers, GltfMes
   }
   GltfMaps made = std::move(keeper).take();
   if (made.uvs && materials != nullptr) return made;
-  // Without texture coordinates a picture has no meaning, nor without materials.
+  // Pictures have no meaning without texture coordinates, or without materials.
   for (std::size_t i = 0; materials != nullptr && i < materials->size(); ++i) {
     Material& each = (*materials)[i];
     each = {.name = each.name, .colour = each.colour};

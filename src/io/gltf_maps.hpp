@@ -12,20 +12,20 @@
 
 namespace meshfarm {
 
-/// What is kept of the textures of a document.
+/// What is kept of a document's textures.
 struct GltfMaps {
   bool uvs = false;  // triangles have texture coordinates
   PictureFiles pictures;
-  std::size_t textures = 0;  // of the document that are maps of materials
-  GltfSkipped skipped;       // "normalTexture": of so many materials
-  GltfSkipped read;          // "TEXCOORD_0": of so many primitives
+  std::size_t textures = 0;  // how many of the document's are maps of materials
+  GltfSkipped skipped;       // "normalTexture": number of materials
+  GltfSkipped read;          // "TEXCOORD_0": number of primitives
 };
 
-/// Gives the labels' materials their maps, and triangles that have texture coordinates theirs: the
-/// set that the picture of their material's colour lies by, or else the first other; without a
-/// picture TEXCOORD_0. A material's other maps are kept if they lie as that one. v becomes 1 - v.
-/// Pictures that are missing, or are none, are left out with a warning. Throws DataError for what
-/// is malformed.
+/// Gives the labels' materials their maps, and the triangles their texture coordinates, if they
+/// have any: the set that places the picture of the material's colour, or else the first other
+/// picture; without a picture TEXCOORD_0. A material's other maps are kept if they have the same
+/// placement. v becomes 1 - v. Pictures that are missing or invalid are left out with a warning.
+/// Throws DataError for malformed input.
 GltfMaps keep_gltf_maps(const GltfValue& document, GltfBuffers& buffers, GltfMeshes& meshes,
                         GltfLabels& labels, const std::string& path);
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is read of a material: its name, baseColorFactor, or with
-// KHR_materials_pbrSpecularGlossiness diffuseFactor, and whether the alpha of it counts: alphaMode.
+// The parts of a material that are read: its name, baseColorFactor, or with
+// KHR_materials_pbrSpecularGlossiness diffuseFactor, and whether its alpha counts: alphaMode.
 #include "gltf_materials.hpp"
 
 #include <algorithm>

@@ -14,17 +14,17 @@
 
 namespace meshfarm {
 
-/// Whether a material says no more than that the mesh is not of metal, as those of our own files
-/// without labels do. It counts as none.
+/// Whether a material says only that the mesh is not metallic, as in our own files without labels.
+/// It counts as none.
 bool is_plain_gltf_material(const nlohmann::json& material);
 
 struct GltfLabels {
   std::optional<LabelMeaning> meaning;
-  std::size_t materials = 0;  // of the document that have become labels
+  std::size_t materials = 0;  // how many of the document's became labels
 };
 
-/// Makes the materials of the meshes' triangles their labels, in the document's order; those
-/// without one come last. Nothing if none has one. Throws DataError for what is malformed.
+/// Makes the materials of the meshes' triangles their labels, in the document's order; triangles
+/// without a material come last. Nothing if none has one. Throws DataError for malformed input.
 GltfLabels label_gltf_meshes(const GltfValue& document, GltfMeshes& meshes);
 
 }  // namespace meshfarm

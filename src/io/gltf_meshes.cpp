@@ -21,7 +21,7 @@ constexpr std::uint64_t k_index_uint16 = 5123;
 constexpr std::uint64_t k_value_float = 5126;
 constexpr std::uint64_t k_no_accessor = UINT64_MAX;
 
-/// Which accessors a primitive's vertices are.
+/// The accessors of a primitive's vertices.
 struct Attributes {
   std::uint64_t positions = k_no_accessor;
   std::uint64_t normals = k_no_accessor;
@@ -34,8 +34,9 @@ bool is_whole_number(PlyType type) {
   return type != PlyType::float32;
 }
 
-/// What an accessor of colours was made from, where it says so. All others are 8 bits of sRGB: what
-/// programs mostly make linear colours of 16 bits and floats from, and all that many read of PLY.
+/// The type that an accessor's colours were made from, if it says so. All others count as 8 bits of
+/// sRGB: programs mostly make linear colours of 16 bits and floats from these, and many read
+/// nothing else from PLY.
 ChannelType colour_type(const GltfValue& accessor) {
   const std::uint64_t type = accessor.at("componentType").whole();
   if (type != k_index_uint16 && type != k_value_float) return ChannelType::uint8;
@@ -60,7 +61,7 @@ class MeshReader {
     if (!attributes.find("POSITION")) return skip("primitives without positions");
     GltfTriangles triangles{
         .place = primitive.place(), .primitive = number, .mode = static_cast<GltfMode>(mode)};
-    // What is compressed so are triangles, whatever they were made from.
+    // Draco data are always triangles, whatever they were made from.
     if (unpack_draco(document_, primitive, buffers_)) triangles.mode = GltfMode::triangles;
     triangles.vertices = vertices_of(attributes);
     triangles.material = primitive.whole_or("material", GltfTriangles::k_no_material);
@@ -148,7 +149,7 @@ class MeshReader {
   GltfMesh mesh_;
 };
 
-/// Whether the extension is known, or changes nothing of what is read here.
+/// Whether the extension is supported, or does not affect what is read here.
 bool is_known(std::string_view extension) {
   static constexpr std::array<std::string_view, 9> k_starts{"KHR_draco_mesh_compression",
                                                             "KHR_mesh_quantization",
@@ -163,7 +164,7 @@ bool is_known(std::string_view extension) {
                      [&](std::string_view start) { return extension.starts_with(start); });
 }
 
-/// "2.1" as 2 and 1; nothing if it is no version.
+/// "2.1" as 2 and 1; nothing for an invalid version.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> parsed_version(std::string_view text) {
   std::pair<std::uint32_t, std::uint32_t> made;
   const char* const end = text.data() + text.size();

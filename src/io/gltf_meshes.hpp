@@ -23,18 +23,18 @@ struct GltfVertices {
   GltfColumn positions;
   std::optional<GltfColumn> normals;
   std::optional<GltfColumn> colours;
-  ChannelType colour_type = ChannelType::uint8;  // that keeps what they say
-  std::uint64_t first = 0;                       // among those of the mesh
-  std::uint64_t texture_colours = 0;             // where theirs begin: see sample_gltf_textures()
+  ChannelType colour_type = ChannelType::uint8;  // holds their values
+  std::uint64_t first = 0;                       // index among the mesh's
+  std::uint64_t texture_colours = 0;             // index of their first: see sample_gltf_textures()
 };
 
-/// A column of texture coordinates, and what becomes of them: (u, v) becomes
+/// A column of texture coordinates and their transform: (u, v) becomes
 /// (u a[0] + v a[1] + a[2], u b[0] + v b[1] + b[2]).
 struct GltfUvs {
   GltfColumn column;
   std::array<double, 3> a{1, 0, 0};
   std::array<double, 3> b{0, 1, 0};
-  bool are_finite = false;  // what is not becomes 0
+  bool are_finite = false;  // what is not finite becomes 0
 };
 
 enum class GltfMode : std::uint8_t { triangles = 4, strip = 5, fan = 6 };
@@ -44,9 +44,9 @@ struct GltfTriangles {
   static constexpr std::uint64_t k_no_material = UINT64_MAX;
 
   std::string place;            // for messages
-  std::uint64_t primitive = 0;  // among those of the mesh
+  std::uint64_t primitive = 0;  // index among the mesh's
   GltfMode mode = GltfMode::triangles;
-  std::size_t vertices = 0;  // which of GltfMesh::vertices
+  std::size_t vertices = 0;  // index in GltfMesh::vertices
   std::optional<GltfColumn> indices;
   std::uint64_t corners = 0;
   std::uint64_t material = k_no_material;  // of the document
@@ -66,16 +66,16 @@ struct GltfMesh {
   std::uint64_t triangle_count = 0;
 };
 
-/// What is left out of the meshes, by what it is, and of how many primitives.
+/// What is left out of the meshes: its name, and the number of primitives.
 using GltfSkipped = std::map<std::string, std::uint64_t>;
 
 /// A mesh of the document; primitives with the same attributes share their vertices. Throws
-/// DataError with the place for what is malformed.
+/// DataError with the place for malformed input.
 GltfMesh read_gltf_mesh(const GltfValue& document, std::uint64_t mesh, GltfBuffers& buffers,
                         GltfSkipped& skipped);
 
-/// Refuses a document that cannot be read without an extension that is not known here, and one of
-/// another version than 2, or that only a reader of a later one than 2.0 can read.
+/// Refuses a document that requires an unknown extension, that has another version than 2, or that
+/// requires a reader of a later version than 2.0.
 void check_gltf(const GltfValue& document);
 
 }  // namespace meshfarm

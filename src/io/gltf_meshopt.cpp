@@ -12,7 +12,7 @@ namespace meshfarm {
 namespace {
 
 constexpr std::uint64_t k_most_meshopt_bytes = std::uint64_t{1} << 31;
-/// No codec makes more of a byte: of 16 rows of a column of bytes there are two bits at least.
+/// No codec expands a byte to more: 16 rows of a column of bytes take at least two bits.
 constexpr std::uint64_t k_most_growth = 256;
 
 enum class Mode : std::uint8_t { attributes, triangles, indices };
@@ -31,7 +31,7 @@ Mode mode_of(const GltfValue& mode) {
   mode.fail("is not ATTRIBUTES, TRIANGLES or INDICES");
 }
 
-/// Accessors are read as the view says.
+/// The accessors rely on the view's sizes.
 void check_view(const GltfValue& view, const Packed& packed) {
   const GltfValue length = view.at("byteLength");
   if (length.whole() != packed.rows * packed.stride) {
@@ -46,7 +46,7 @@ void check_view(const GltfValue& view, const Packed& packed) {
   }
 }
 
-/// What the decoders only assert is checked here.
+/// Checks what the decoders only assert.
 Packed checked(const GltfValue& view, const GltfValue& compression,
                std::uint64_t compressed_bytes) {
   Packed made{.mode = mode_of(compression.at("mode"))};

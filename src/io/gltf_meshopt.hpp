@@ -7,9 +7,9 @@
 
 namespace meshfarm {
 
-/// Decompresses a buffer view of a document that EXT_meshopt_compression compressed, and keeps it
-/// in the store. While it is made it is in memory, together with what it is made from. Throws
-/// DataError for what is malformed or does not fit its view, and for more than 2 GiB.
+/// Decompresses a buffer view that EXT_meshopt_compression compressed, and keeps the result in the
+/// store. Meanwhile both are in memory. Throws DataError for data that are malformed or do not fit
+/// the view, and for more than 2 GiB.
 GltfBuffer decode_meshopt(const GltfValue& view, const GltfValue& compression,
                           const GltfBuffer& compressed, GltfStore& store);
 

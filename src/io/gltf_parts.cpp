@@ -35,7 +35,7 @@ std::vector<GltfPart> GltfParts::finish(const std::filesystem::path& path) {
   return parts;
 }
 
-/// Each to where the next of its material goes.
+/// Moves each triangle to the next place of its material.
 void GltfParts::sort() {
   sorted_ = ScratchArray<Corners>(count_);
   std::vector<std::uint64_t> next(counts_.size());

@@ -17,16 +17,16 @@
 
 namespace meshfarm {
 
-/// Triangles, which come in any order and are written material by material. They are kept in up to
-/// 96 MB of memory, or in scratch files.
+/// Collects triangles in any order and writes them material by material. They are kept in up to 96
+/// MB of memory, or in scratch files.
 class GltfParts {
  public:
   GltfParts(const LabelMeaning& meaning, std::uint64_t triangles);
 
   void add(const TriangleView& batch);
-  /// When all are added: the materials that triangles have, and how many of them.
+  /// To be called after the last add(): the materials in use, each with its number of triangles.
   std::vector<GltfPart> finish(const std::filesystem::path& path);
-  /// The indices of these, in the same order, of so many bytes each.
+  /// The indices of the triangles, in the same order, with `index_bytes` bytes each.
   void write(std::size_t index_bytes, const std::function<void(std::string_view)>& to);
 
  private:

@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::uint64_t k_most_gltf_vertices = std::uint64_t{1} << 62;
 
-/// Which of the channels there are, and in which order their values come: the normal, the colour.
+/// The channels that exist; their values come in this order: normal, colour.
 struct GltfChannels {
   bool normals = false;
   bool colours = false;
@@ -185,7 +185,8 @@ class GltfSource final : public MeshSource {
         options.textures == Textures::bake ? LostPictures::left : LostPictures::told);
   }
 
-  /// Normals are taken only where all vertices have them: blended with none they mean nothing.
+  /// Normals are used only if all vertices have them: interpolated with missing ones they mean
+  /// nothing.
   void find_channels(const OpenOptions& options, GltfSkipped& skipped) {
     std::uint64_t with_normals = 0;
     std::uint64_t with_colours = 0;
@@ -231,7 +232,7 @@ class GltfSource final : public MeshSource {
     if (meshes > meshes_.size()) skipped["meshes outside the scene"] += meshes - meshes_.size();
   }
 
-  /// Calls `use` for some rows at a time of all vertices of all instances.
+  /// Calls `use` with batches of rows for all vertices of all instances.
   template <class Use>
   void for_vertices(const Use& use) const {
     for (const GltfInstance& instance : instances_) {
@@ -279,7 +280,8 @@ class GltfSource final : public MeshSource {
     }
   }
 
-  /// What has none is white. Textures' colours are multiplied by those of the vertices.
+  /// Vertices without a colour are white. The colours of textures are multiplied by those of the
+  /// vertices.
   void read_colours(const GltfVertices& vertices, std::size_t first, const Rows& rows,
                     std::span<float> values) {
     const double largest = channels_.largest_level();

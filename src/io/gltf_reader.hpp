@@ -11,9 +11,9 @@
 
 namespace meshfarm {
 
-/// Reads the triangles of the default scene as one mesh, with its nodes' transforms. Colours become
-/// those of sRGB. Throws DataError for what is malformed, and for extensions without
-/// which the file cannot be read.
+/// Reads the triangles of the default scene as one mesh, with its nodes' transforms. Colours are
+/// converted to sRGB. Throws DataError for malformed input, and for required extensions that are
+/// not supported.
 std::unique_ptr<MeshSource> open_glb(InputFile file, const OpenOptions& options);
 std::unique_ptr<MeshSource> open_gltf(InputFile file, const OpenOptions& options);
 

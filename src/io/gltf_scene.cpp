@@ -28,7 +28,8 @@ GltfTransform of_matrix(const GltfValue& matrix) {
   return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
 }
 
-/// A turn by a quaternion, which is made 1 long: what is written with few digits is not.
+/// The rotation of a quaternion, which is normalised first: one written with few digits has not
+/// length 1.
 GltfTransform of_rotation(const GltfValue& rotation) {
   std::array<double, 4> q = numbers<4>(rotation);
   double largest = 0;
@@ -36,7 +37,7 @@ GltfTransform of_rotation(const GltfValue& rotation) {
   if (largest == 0) rotation.fail("is a quaternion without a length");
   double squared = 0;
   for (double& each : q) {
-    each /= largest;  // or the squares might not be finite
+    each /= largest;  // else the squares might not be finite
     squared += each * each;
   }
   for (double& each : q) each /= std::sqrt(squared);
@@ -62,13 +63,13 @@ GltfTransform transform_of(const GltfValue& node) {
   return made;
 }
 
-/// Goes through the nodes without recursion: they may be as deep as they are many.
+/// Visits the nodes without recursion: they may be nested as deep as there are nodes.
 class SceneReader {
  public:
   explicit SceneReader(const GltfValue& document)
       : nodes_(document.find("nodes")), is_reached_(document.size_of("nodes")) {}
 
-  /// The nodes that are nobody's children.
+  /// The nodes without a parent.
   std::vector<std::uint64_t> roots() const {
     std::vector<bool> is_child(is_reached_.size());
     std::vector<std::uint64_t> made;
@@ -109,7 +110,7 @@ class SceneReader {
   GltfScene take() { return std::move(scene_); }
 
  private:
-  /// A node on the way from the root to where the reader is.
+  /// A node on the path from the root to the current one.
   struct Visit {
     std::uint64_t node = 0;
     std::uint64_t next_child = 0;
@@ -122,7 +123,7 @@ class SceneReader {
     is_reached_[index] = true;
     const GltfTransform transform = combined(outer, transform_of(node));
     if (const auto mesh = node.find("mesh")) {
-      // Only its bones move a mesh that has some.
+      // A mesh with a skin is moved only by its bones.
       scene_.instances.push_back({mesh->whole(), node.find("skin") ? GltfTransform{} : transform});
       const auto extensions = node.find("extensions");
       if (extensions && extensions->find("EXT_mesh_gpu_instancing")) ++scene_.repeated;
@@ -138,13 +139,13 @@ class SceneReader {
 }  // namespace
 
 Vec3 GltfTransform::of_normal(Vec3 a) const {
-  // By the cofactors, which are the inverse's transpose but for the size of the determinant.
+  // By the cofactors: they are the transposed inverse, except for the size of the determinant.
   const Vec3 turned = cross(y, z) * a.x + cross(z, x) * a.y + cross(x, y) * a.z;
   return is_mirror() ? turned * -1 : turned;
 }
 
 GltfTransform combined(const GltfTransform& outer, const GltfTransform& inner) {
-  // Without a rounding that has no reason.
+  // Avoids needless rounding.
   if (outer.is_identity()) return inner;
   return {outer.turned(inner.x), outer.turned(inner.y), outer.turned(inner.z),
           outer.of(inner.origin)};

@@ -22,16 +22,16 @@ struct GltfTransform {
   bool is_identity() const { return *this == GltfTransform{}; }
   Vec3 turned(Vec3 a) const { return x * a.x + y * a.y + z * a.z; }
   Vec3 of(Vec3 a) const { return turned(a) + origin; }
-  /// What triangles are seen from becomes their other side.
+  /// Whether it turns triangles over.
   bool is_mirror() const { return dot(cross(x, y), z) < 0; }
   /// The direction of a normal, of any length.
   Vec3 of_normal(Vec3 a) const;
 };
 
-/// The map of `inner`, and then that of `outer`.
+/// Applies `inner` first, then `outer`.
 GltfTransform combined(const GltfTransform& outer, const GltfTransform& inner);
 
-/// A mesh, where a node of the scene puts it.
+/// A mesh as placed by a node of the scene.
 struct GltfInstance {
   std::uint64_t mesh = 0;
   GltfTransform transform;
@@ -39,14 +39,14 @@ struct GltfInstance {
 
 struct GltfScene {
   std::vector<GltfInstance> instances;
-  /// Of them those that EXT_mesh_gpu_instancing would show in many places; they come once.
+  /// How many of these EXT_mesh_gpu_instancing would show in many places; they come once.
   std::uint64_t repeated = 0;
 };
 
 /// The meshes of the default scene, in the order of its nodes, children after their parents. A
-/// document without scenes shows all nodes, one without nodes all meshes. What has a skin is not
-/// moved by its node, only by its bones, which are not read. Throws DataError where the nodes are
-/// no trees.
+/// document without scenes shows all nodes, one without nodes all meshes. A mesh with a skin is not
+/// moved by its node, only by its bones, which are not read. Throws DataError where the nodes do
+/// not form trees.
 GltfScene read_gltf_scene(const GltfValue& document);
 
 }  // namespace meshfarm

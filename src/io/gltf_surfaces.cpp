@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is written of a material: its name, baseColorFactor, alphaMode "BLEND" with an alpha below
-// 1, and of its maps baseColorTexture, metallicRoughnessTexture, normalTexture, occlusionTexture
-// and emissiveTexture. It is no metal, unless a picture says so.
+// The parts of a material that are written: its name, baseColorFactor, alphaMode "BLEND" with an
+// alpha below 1, and of its maps baseColorTexture, metallicRoughnessTexture, normalTexture,
+// occlusionTexture and emissiveTexture. It is not metallic, unless a picture says so.
 #include "gltf_surfaces.hpp"
 
 #include <algorithm>

@@ -27,21 +27,23 @@ struct GltfImage {
   std::string uri = {};    // of the file, if it is not in the buffer
 };
 
-/// Those of the materials' pictures, each once, in the order of their first use. Of what is none a
-/// warning names the mesh. Throws as PictureFiles::load does.
+/// The images of the materials' pictures, each once, in the order of their first use. A picture of
+/// another format is left out with a warning that names the mesh. Throws as PictureFiles::load
+/// does.
 std::vector<GltfImage> find_gltf_images(std::span<const Material* const> materials,
                                         const PictureFiles& pictures,
                                         const std::filesystem::path& mesh);
 
-/// Makes materials, and the textures and the samplers that they name.
+/// Makes materials, and the textures and samplers that they use.
 class GltfSurfaces {
  public:
   using Json = nlohmann::ordered_json;
 
   explicit GltfSurfaces(std::span<const GltfImage> images);
-  /// With its maps of these images.
+  /// With those of its maps that are among the images.
   Json material(const Material& material);
-  /// Adds "textures", "samplers" and "images", those in the buffer as views from `first_view` on.
+  /// Adds "textures", "samplers" and "images"; those in the buffer have the views from `first_view`
+  /// on.
   void finish(std::size_t first_view, Json& document) const;
 
  private:
@@ -50,8 +52,8 @@ class GltfSurfaces {
   std::size_t sampler(const Wraps& wraps);
 
   std::span<const GltfImage> images_;
-  std::map<std::size_t, std::size_t> image_of_;                            // each picture
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> texture_of_;  // sampler and image
+  std::map<std::size_t, std::size_t> image_of_;                            // by picture
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> texture_of_;  // by sampler and image
   std::map<Wraps, std::size_t> sampler_of_;
   Json textures_ = Json::array();
   Json samplers_ = Json::array();

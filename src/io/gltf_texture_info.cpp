@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::uint64_t k_most_image_bytes = std::uint64_t{1} << 30;
 
-/// Sine and cosine of an angle, the same on all machines.
+/// Sine and cosine of an angle, identical on all machines.
 std::array<double, 2> sine_and_cosine(double angle) {
   constexpr double k_turn = 6.283185307179586;
-  // Of a small angle by their series, and then of its doubles.
+  // The series of a small angle, which is then doubled.
   constexpr int k_doublings = 6;
   double x = (angle - k_turn * std::floor(angle / k_turn)) / (1 << k_doublings);
   const double square = x * x;
@@ -28,7 +28,7 @@ std::array<double, 2> sine_and_cosine(double angle) {
   return {sine, cosine};
 }
 
-/// The image itself, before those that other formats may have beside it.
+/// The image itself, rather than those that the texture may have in other formats.
 std::optional<std::uint64_t> source_of(const GltfValue& texture) {
   if (const auto source = texture.find("source")) return source->whole();
   for (const char* name :
@@ -54,7 +54,7 @@ TextureWrap wrap_of(const GltfValue& sampler, const char* name) {
   }
 }
 
-/// offset * rotation * scale, as the extension's text has it.
+/// offset * rotation * scale, as in the extension's specification.
 void read_transform(const GltfValue& transform, GltfTexture& made) {
   std::array<double, 2> offset{0, 0};
   std::array<double, 2> scale{1, 1};

@@ -18,14 +18,14 @@
 
 namespace meshfarm {
 
-/// An extension of a value, if it has that.
+/// An extension of a value, if it has it.
 std::optional<GltfValue> gltf_extension(const GltfValue& value, std::string_view name);
 
-/// Numbers of an array that is to have so many; as they are if it is absent.
+/// Reads an array that must have this many numbers; leaves them unchanged if it is absent.
 void read_gltf_numbers(const GltfValue& value, std::string_view name, std::span<double> numbers);
 
-/// A texture of a material, and how it lies: a place (u, v) of the accessor is
-/// (u a[0] + v a[1] + a[2], u b[0] + v b[1] + b[2]) of the image, from its upper left corner.
+/// A texture of a material and its placement: (u, v) of the accessor is
+/// (u a[0] + v a[1] + a[2], u b[0] + v b[1] + b[2]) in the image, from its upper left corner.
 struct GltfTexture {
   std::uint64_t texture = 0;           // of the document
   std::optional<std::uint64_t> image;  // of the document
@@ -41,10 +41,10 @@ struct GltfTexture {
   }
 };
 
-/// `info`: what a material has as "baseColorTexture", and such.
+/// `info`: the value of a material's "baseColorTexture", and the like.
 GltfTexture read_gltf_texture(const GltfValue& document, const GltfValue& info);
 
-/// What to call an image in messages.
+/// The name of an image in messages.
 std::string gltf_image_name(const GltfValue& image, std::uint64_t number);
 /// The file of an image.
 std::shared_ptr<const GltfBuffer> open_gltf_image(const GltfValue& document, GltfBuffers& buffers,

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is read of a material: baseColorTexture and baseColorFactor, or with
+// The parts of a material that are read: baseColorTexture and baseColorFactor, or with
 // KHR_materials_pbrSpecularGlossiness diffuseTexture and diffuseFactor; KHR_texture_transform. The
-// alpha of both is passed over.
+// alpha of both is ignored.
 #include "gltf_textures.hpp"
 
 #include <algorithm>
@@ -19,11 +19,11 @@
 namespace meshfarm {
 namespace {
 
-/// One of a mesh's primitives, and what colours it.
+/// One of a mesh's primitives, and its material.
 struct Primitive {
   const GltfTriangles* triangles = nullptr;
   const GltfVertices* vertices = nullptr;
-  std::size_t material = 0;          // of Surfaces::materials
+  std::size_t material = 0;          // index in Surfaces::materials
   std::optional<GltfColumn> places;  // if the material has an image
 };
 
@@ -60,7 +60,7 @@ class Surfaces {
     if (materials_[made.material].has_image()) {
       made.places = open_gltf_places(document_, buffers_, primitive, found->second.set,
                                      made.vertices->positions.rows);
-      // Without coordinates a texture has no meaning.
+      // A texture has no meaning without coordinates.
       if (!made.places) made.material = without_image(made.material);
     }
     primitives_.push_back(made);

@@ -23,13 +23,13 @@ using GltfMeshes = std::map<std::uint64_t, GltfMesh>;
 using GltfScan = std::function<void(const GltfTriangles& triangles, const GltfVertices& vertices,
                                     const std::function<void(const TriangleView&)>& take)>;
 
-/// The pictures that colour the meshes, as lines for the user.
+/// Describes the pictures that colour the meshes, one line each, for the user.
 std::vector<std::string> describe_gltf_textures(const GltfValue& document, GltfBuffers& buffers,
                                                 const GltfMeshes& meshes, LostPictures lost);
 
-/// Samples the base colours' textures and factors of the meshes' materials, and sets where each
-/// GltfVertices' colours begin. Null if no texture colours them. Throws DataError for what is
-/// malformed, but not for pictures.
+/// Samples the base colours' textures and factors of the meshes' materials, and sets where the
+/// colours of each GltfVertices begin. Null if no texture colours them. Throws DataError for
+/// malformed input, except in pictures.
 std::unique_ptr<TextureColours> sample_gltf_textures(const GltfValue& document,
                                                      GltfBuffers& buffers, GltfMeshes& meshes,
                                                      const std::string& path, const GltfScan& scan,

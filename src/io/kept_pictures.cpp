@@ -29,7 +29,7 @@ bool is_extension_of(PictureHead::Kind kind, std::string_view extension) {
   return extension == ".jpg" || extension == ".jpeg" || extension == ".jpe";
 }
 
-/// One that says something else than what the picture is.
+/// Whether it is a picture's extension; here it is one that does not fit the content.
 bool is_other_extension(std::string_view extension) {
   static constexpr std::array<std::string_view, 13> k_known{
       ".png", ".jpg",  ".jpeg", ".jpe", ".webp", ".bmp", ".tga",
@@ -37,11 +37,11 @@ bool is_other_extension(std::string_view extension) {
   return std::find(k_known.begin(), k_known.end(), extension) != k_known.end();
 }
 
-/// What is a name on every system, and one word of no format's own.
+/// A name that is valid on every system, without characters that have a meaning in some format.
 std::string cleaned(std::string_view stem) {
   constexpr std::string_view k_odd = "<>:\"|?*#%";
   std::string made(stem.substr(0, k_longest_stem));
-  if (made.size() < stem.size()) {  // not in the middle of a character
+  if (made.size() < stem.size()) {  // does not split a character
     while (!made.empty() && (static_cast<unsigned char>(stem[made.size()]) & 0xc0) == 0x80) {
       made.pop_back();
     }
@@ -71,7 +71,7 @@ std::optional<std::uint32_t> KeptPictures::number_of(const std::string& key,
                                                      const TextureImage& image) {
   const auto [known, is_new] = known_.try_emplace(key);
   if (!is_new) return known->second;
-  // A mesh is of use without its pictures, and many come without them.
+  // A mesh is useful without its pictures, and many come without them.
   try {
     std::string name = free_name(wanted, image.load());
     known->second = static_cast<std::uint32_t>(names_.size());

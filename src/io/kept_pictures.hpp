@@ -18,18 +18,18 @@
 
 namespace meshfarm {
 
-/// The picture of a name in this folder or below it.
+/// The picture with this name in this folder or below it.
 TextureImage picture_beside(const std::filesystem::path& folder, const std::string& name);
 
-/// Collects the pictures of materials, to hand them on as whole files. Each gets the name of a file
-/// that no other has, whatever the case of letters, with an extension that says what it is.
+/// Collects the pictures of materials, to pass them on as whole files. Each gets a unique file
+/// name, regardless of the case of letters, with an extension that fits its content.
 class KeptPictures {
  public:
   using Warn = std::function<void(const std::string& line)>;
   KeptPictures(std::string path, Warn warn) : path_(std::move(path)), warn_(std::move(warn)) {}
 
-  /// The number of a picture, which `key` tells from all others. Nothing, after a warning, if it is
-  /// missing or cannot be read. `wanted` is its name, and may have folders or no extension.
+  /// The number of a picture; `key` identifies it. Nothing, after a warning, if it is missing or
+  /// cannot be read. `wanted` is its name, which may have folders or no extension.
   std::optional<std::uint32_t> number_of(const std::string& key, std::string_view wanted,
                                          const TextureImage& image);
   /// What image.load needs must live as long as this.
@@ -44,7 +44,7 @@ class KeptPictures {
   std::vector<std::string> names_;
   std::vector<std::function<std::string()>> loads_;
   std::set<std::string> taken_;             // names in small letters
-  std::map<std::string, unsigned> number_;  // the last that was added to a name
+  std::map<std::string, unsigned> number_;  // the last suffix given to each name
 };
 
 }  // namespace meshfarm

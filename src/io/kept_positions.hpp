@@ -13,19 +13,19 @@
 
 namespace meshfarm {
 
-/// All positions of a mesh in file order, kept from one scan to the next: a few in memory, more in
-/// a scratch file without a name in $TMPDIR (or /tmp), 12 bytes a vertex of floats and 24 of
+/// All positions of a mesh in file order, kept between scans: a limited number in memory, more in a
+/// scratch file without a name in $TMPDIR (or /tmp), with 12 bytes per vertex for floats and 24 for
 /// doubles.
 class KeptPositions {
  public:
-  /// For so many vertices. Throws IoError.
+  /// For this number of vertices. Throws IoError.
   KeptPositions(PositionType type, std::uint64_t vertices);
 
-  /// Adds the next ones. Throws IoError, for a full disk, say.
+  /// Appends positions. Throws IoError, for a full disk, say.
   void add(std::span<const Vec3> batch);
   void scan(const std::function<void(std::span<const Vec3>)>& take) const;
 
-  /// Where they lie in memory, if they do.
+  /// The positions, if they are in memory.
   const std::vector<Vec3>& in_memory() const { return memory_; }
   bool is_in_memory() const { return !file_; }
   PositionType type() const { return type_; }

@@ -9,7 +9,7 @@
 namespace meshfarm {
 namespace {
 
-/// What stands in a file: v goes downwards there.
+/// As stored in a file, where v goes down.
 Uv gltf_uv(Uv uv) {
   return {uv[0], 1 - uv[1]};
 }

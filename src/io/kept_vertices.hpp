@@ -16,15 +16,15 @@
 
 namespace meshfarm {
 
-/// The encoded vertices of a glTF, kept until all triangles are known. One that has several texture
-/// coordinates becomes several: the first keeps its place, the others come behind all vertices.
+/// The encoded vertices of a glTF, kept until all triangles are known. A vertex with several
+/// texture coordinates is split: the first keeps its index, the others follow after all vertices.
 class KeptVertices {
  public:
   /// Throws IoError.
   explicit KeptVertices(const GltfLayout& layout);
 
   void add(std::string_view bytes);
-  /// The vertex with these texture coordinates, when all are added.
+  /// To be called after the last add(): the vertex with these texture coordinates.
   std::uint64_t split(std::uint64_t vertex, Uv uv);
   std::uint64_t count() const { return count_ + split_.size(); }
   void write(const std::function<void(std::string_view)>& to);
@@ -32,7 +32,7 @@ class KeptVertices {
  private:
   struct Split {
     Uv uv{};
-    std::uint64_t vertex = 0;  // whose bytes are the others
+    std::uint64_t vertex = 0;  // the other bytes are copied from it
   };
   char* row(std::uint64_t vertex) { return bytes_.items().data() + vertex * row_bytes_; }
 

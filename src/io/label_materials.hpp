@@ -12,15 +12,15 @@
 
 namespace meshfarm {
 
-/// The materials that a format writes for labels: those that they mean, or for labels that are only
-/// numbers one a number, "region 7", in the order of their first use. Of numbers up to
-/// k_most_numbers have one of their own, all others share one.
+/// The materials that a format writes for labels: those of their meaning or, for labels that are
+/// only numbers, one per number, "region 7", in the order of their first use. Up to k_most_numbers
+/// numbers have their own; all others share one.
 class LabelMaterials {
  public:
   static constexpr std::size_t k_most_numbers = 65'535;
 
   explicit LabelMaterials(const LabelMeaning& meaning);
-  /// Where the material of a label stands. It is used then.
+  /// The index of a label's material, which then counts as used.
   std::size_t place_of(Label label) {
     if (last_place_ == k_none || label != last_) find(label);
     return last_place_;

@@ -10,11 +10,11 @@
 
 namespace meshfarm {
 
-/// Names that are to be different from each other.
+/// Makes names unique.
 class FreeNames {
  public:
   void take(std::string_view name) { taken_.emplace(name); }
-  /// The name if it is free, else with a number after it: "stone_2". It is taken then.
+  /// The name if it is free, else with a number appended: "stone_2". It is taken from then on.
   std::string next(const std::string& wanted) {
     if (taken_.insert(wanted).second) return wanted;
     std::size_t& number = numbers_.try_emplace(wanted, 1).first->second;
@@ -26,7 +26,7 @@ class FreeNames {
 
  private:
   std::set<std::string, std::less<>> taken_;
-  std::map<std::string, std::size_t> numbers_;  // the last of each
+  std::map<std::string, std::size_t> numbers_;  // the last suffix given to each name
 };
 
 }  // namespace meshfarm

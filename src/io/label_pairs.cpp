@@ -11,7 +11,7 @@ namespace {
 
 using PairNumbers = std::map<std::string, Label>;
 
-/// Names as every format can write them.
+/// A name as every format can write it.
 std::string key_of(std::string name) {
   for (char& c : name) {
     if (static_cast<unsigned char>(c) <= ' ' || c == '#' || c == '\\') c = '_';

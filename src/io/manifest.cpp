@@ -39,7 +39,7 @@ namespace {
 constexpr FileKind k_manifest_kind = {'M', 'N', 'F', 'T'};
 constexpr std::uint32_t k_manifest_version = 8;
 
-/// A manifest may name only files of the kind that stands in that place.
+/// A manifest may name only files of the kind that belongs in that place.
 template <class Name>
 void check_name(const ByteReader& in, const FileRef& file) {
   const auto name = parse_staged_name(file.name);
@@ -112,7 +112,7 @@ Material get_material(ByteReader& in, bool uvs) {
   return material;
 }
 
-/// What triangles have beside their corners.
+/// The columns of the triangles, and what belongs to them.
 void put_columns(ByteWriter& out, const Manifest& m) {
   out.put(static_cast<std::uint8_t>((m.labels ? k_has_labels : 0) | (m.uvs ? k_has_uvs : 0)));
   if (m.labels) {

@@ -22,7 +22,7 @@ namespace {
 
 using Linear = std::array<float, 3>;
 
-/// A place from 0 to 1 that shows the same.
+/// The equivalent place between 0 and 1.
 double wrapped(double x, TextureWrap wrap) {
   if (!std::isfinite(x)) return 0;
   if (wrap == TextureWrap::clamp) return std::clamp(x, 0.0, 1.0);
@@ -32,7 +32,7 @@ double wrapped(double x, TextureWrap wrap) {
   return is_mirrored ? 1 - rest : rest;
 }
 
-/// The texels on both sides of a place along one side of a picture, and the share of the second.
+/// The texels on both sides of a place along one axis of a picture, and the weight of the second.
 struct Between {
   std::uint32_t first;
   std::uint32_t second;
@@ -50,7 +50,7 @@ Between between(double place, std::uint32_t size, TextureWrap wrap) {
   return {texel(below), texel(below + 1), static_cast<float>(x - below)};
 }
 
-/// What a picture shows; `texels` as in MaterialColours::at.
+/// The colour of a picture; `texels` as in MaterialColours::at.
 Linear looked_up(const PictureLevels& picture, const Material& material, Uv uv, double texels) {
   const std::vector<LevelSize>& sizes = picture.sizes();
   std::size_t level = 0;
@@ -152,7 +152,7 @@ class MaterialColours::Impl {
   /// False if it would take too much memory.
   bool decode(std::size_t picture, std::string file, std::uint64_t& bytes, std::uint64_t most) {
     const PictureHead head = read_picture_head(file);
-    // Three bytes a texel, the smaller copies a third of it again; and while it is decoded.
+    // Three bytes per texel, a third of that for the smaller copies; and the memory for decoding.
     const std::uint64_t kept = std::uint64_t{4} * head.width * head.height;
     if (bytes + kept + head.memory_bytes() > most) return false;
     pictures_[picture] = std::make_unique<DecodedLevels>(decode_picture(std::move(file)));
@@ -167,7 +167,7 @@ class MaterialColours::Impl {
 
   std::vector<Material> materials_;
   std::vector<std::size_t> picture_of_;                   // of each material
-  std::vector<std::unique_ptr<PictureLevels>> pictures_;  // null where there is none to look at
+  std::vector<std::unique_ptr<PictureLevels>> pictures_;  // null where there is none to use
 };
 
 std::vector<bool> colour_pictures(const LabelMeaning& labels, std::size_t pictures) {

@@ -40,7 +40,7 @@ bool keeps_none(std::span<const Channel> /*all*/, const Channel& /*channel*/) {
   return false;
 }
 
-/// What of labels a format has a place for.
+/// How much of the labels a format has a place for.
 enum class KeptLabels : std::uint8_t { none, numbers, all };
 
 constexpr std::array k_colour_maps = {MapUse::colour};
@@ -48,16 +48,17 @@ constexpr std::array k_obj_maps = {MapUse::colour, MapUse::normal, MapUse::emiss
 constexpr std::array k_gltf_maps = {MapUse::colour, MapUse::normal, MapUse::metal_and_roughness,
                                     MapUse::occlusion, MapUse::emission};
 
-/// What has a second way to be written in has a second row, without a name. What is only read has
-/// no extension. What is sure of its content comes before what asks for the name, too.
+/// A format with a second encoding has a second row, without a name. A row that is only for reading
+/// has no extension. Formats recognised by content alone come before those that also depend on the
+/// file name.
 struct MeshFormat {
-  std::string_view name;  // as the user is told it
+  std::string_view name;  // as shown to the user
   std::string_view extension;
   bool (*recognises)(const InputFile& file);  // by content
   std::unique_ptr<MeshSource> (*open)(InputFile file, const OpenOptions& options);
   std::unique_ptr<MeshSink> (*create)(const std::filesystem::path& path,
                                       const MeshSinkOptions& options);
-  bool (*keeps)(std::span<const Channel> all, const Channel& channel);  // when it is written
+  bool (*keeps)(std::span<const Channel> all, const Channel& channel);  // when writing
   KeptLabels labels = KeptLabels::none;                                 // the same
   std::span<const MapUse> maps = {};  // of its pictures; none if it has no texture coordinates
 };

@@ -14,7 +14,7 @@ Mesh read_mesh(MeshSource& source) {
                     std::to_string(UINT32_MAX));
   }
   Mesh mesh;
-  if (source.info().compression == "none") {  // else the counts are the header's mere claim
+  if (source.info().compression == "none") {  // else the counts are only the header's claim
     mesh.positions.reserve(source.info().vertices);
     mesh.triangles.reserve(source.info().faces);
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is read of a library, one statement a line; names may have blanks in them:
+// The statements of a library that are read, one a line; names may contain blanks:
 //   "newmtl" name
 //   "Kd" r g b
 //   "d" alpha, or "Tr" 1 - alpha if there is no "d"
@@ -30,7 +30,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(k_blanks) + 1 - first);
 }
 
-/// The text's first word, which is taken off it.
+/// Removes and returns the text's first word.
 std::string_view take_word(std::string_view& text) {
   text = trimmed(text);
   const std::string_view word = text.substr(0, text.find_first_of(k_blanks));
@@ -52,12 +52,12 @@ std::optional<double> number_of(std::string_view word) {
   return value;
 }
 
-/// Up to three numbers, as many as there are; the first two count. Those that are not there stay.
+/// Reads up to three numbers, of which the first two are used. Missing ones stay unchanged.
 void take_numbers(std::string_view& text, std::array<double, 2>& values) {
   for (std::size_t i = 0; i < 3; ++i) {
     std::string_view rest = text;
     const std::optional<double> value = number_of(take_word(rest));
-    if (!value || rest.empty()) return;  // what is last is the file
+    if (!value || rest.empty()) return;  // the last word is the file
     if (i < values.size()) values[i] = *value;
     text = rest;
   }
@@ -72,7 +72,7 @@ void read_map(std::string_view text, MtlMap& map) {
   while (text.starts_with('-')) {
     std::string_view rest = text;
     const std::string_view option = take_word(rest);
-    if (rest.empty()) break;  // a file with an odd name
+    if (rest.empty()) break;  // a file whose name looks like an option
     text = rest;
     std::array<double, 2> ignored{};
     if (is_mtl_word(option, "-s")) {
@@ -109,7 +109,7 @@ bool is_map(std::string_view word) {
          is_mtl_word(word, "decal") || is_mtl_word(word, "refl");
 }
 
-/// Of the words for a normal map "norm" says what it is; the others may be of heights, too.
+/// Of the words for a normal map, "norm" is unambiguous; the others may also mean height maps.
 void read_maps(std::string_view word, std::string_view line, MtlMaterial& material) {
   if (is_mtl_word(word, "map_kd")) {
     read_map(line, material.map);
@@ -124,7 +124,7 @@ void read_maps(std::string_view word, std::string_view line, MtlMaterial& materi
   }
 }
 
-/// 0 to 1.
+/// An alpha from 0 to 1.
 std::optional<double> alpha_of(std::string_view text) {
   std::string_view word = take_word(text);
   if (is_mtl_word(word, "-halo")) word = take_word(text);
@@ -136,7 +136,7 @@ std::optional<double> alpha_of(std::string_view text) {
 
 std::vector<MtlMaterial> parse_mtl(std::string_view text) {
   std::vector<MtlMaterial> made;
-  bool has_alpha = false;  // the last material
+  bool has_alpha = false;  // whether the last material has one
   const char line_end = line_end_of(text);
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   while (!text.empty()) {

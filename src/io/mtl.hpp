@@ -9,7 +9,7 @@
 
 namespace meshfarm {
 
-/// A picture that a material has, and how it lies on the surface.
+/// A picture of a material, and its placement on the surface.
 struct MtlMap {
   std::string file;                   // may be empty
   std::array<double, 2> scale{1, 1};  // u becomes u scale + offset
@@ -21,7 +21,7 @@ struct MtlMap {
   }
 };
 
-/// A material of an OBJ's library, as far as it colours.
+/// A material of an OBJ's library, reduced to what colours it.
 struct MtlMaterial {
   std::string name;
   std::array<double, 3> colour{1, 1, 1};  // Kd, as sRGB from 0 to 1
@@ -32,7 +32,7 @@ struct MtlMaterial {
   std::vector<std::string> other_maps;    // the words of those that are not read: "map_Ks"
 };
 
-/// The materials of a library, in its order. What is malformed counts as not there.
+/// The materials of a library, in its order. Malformed statements are ignored.
 std::vector<MtlMaterial> parse_mtl(std::string_view text);
 
 }  // namespace meshfarm

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is written, names without blanks:
+// The output; names have no blanks:
 //   in the OBJ:     "mtllib" NAME.mtl, and "usemtl" name before the triangles that have it;
 //                   of groups "g" name alone
 //   in the library: { "newmtl" name, "Kd" r g b as sRGB, "d" alpha, { map } }
@@ -26,7 +26,7 @@ std::filesystem::path library_path(const std::filesystem::path& obj) {
   return std::filesystem::path(obj).replace_extension(".mtl");
 }
 
-/// One word that no reader takes for something else.
+/// One word that no reader misinterprets.
 std::string word_of(const std::string& name) {
   std::string word = name.empty() ? "material" : name;
   for (char& c : word) {
@@ -35,7 +35,7 @@ std::string word_of(const std::string& name) {
   return word;
 }
 
-/// What stands before a picture's name; empty if there is no such word.
+/// The word before a picture's name; empty if there is none.
 std::string_view map_word(MapUse use) {
   switch (use) {
     case MapUse::colour:
@@ -121,7 +121,7 @@ std::string ObjLabels::library_text() {
   return text;
 }
 
-/// Not of what a library has no word for: roughness, occlusion, mirrored textures.
+/// Nothing for maps that a library has no word for: roughness, occlusion, mirrored textures.
 std::string ObjLabels::maps_text(const Material& material) {
   const bool is_clamped =
       material.wrap_u == TextureWrap::clamp && material.wrap_v == TextureWrap::clamp;

@@ -17,7 +17,7 @@
 
 namespace meshfarm {
 
-/// The labels of an OBJ that is written: "usemtl" statements, and beside it a library of the same
+/// The labels of an OBJ that is written: "usemtl" statements and, beside it, a library of the same
 /// name, "mesh.mtl", with its pictures; or "g" statements if they are groups.
 class ObjLabels {
  public:
@@ -25,12 +25,12 @@ class ObjLabels {
   ObjLabels(const std::filesystem::path& obj, const LabelMeaning& meaning,
             const PictureFiles& pictures = {});
 
-  /// What stands at the start of the OBJ.
+  /// The text for the start of the OBJ.
   std::string header() const;
-  /// What stands before a triangle of this label: a line, or nothing if the one before has the
-  /// same.
+  /// The text before a triangle of this label: a line, or nothing if the previous triangle has the
+  /// same label.
   std::string_view statement(Label label);
-  /// Writes the library, and the pictures that it names, under temporary names yet.
+  /// Writes the library and the pictures that it names, still under temporary names.
   void finish();
   void commit();
 
@@ -43,7 +43,7 @@ class ObjLabels {
   bool are_groups_;
   LabelMaterials materials_;
   FreeNames free_names_;
-  std::vector<std::string> lines_;  // of each material; empty until it is used
+  std::vector<std::string> lines_;  // of each material; empty until used
   std::optional<std::size_t> last_;
   std::optional<AtomicFile> library_;
   PicturesBeside pictures_;

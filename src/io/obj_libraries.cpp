@@ -29,7 +29,7 @@ class Libraries {
   }
 
  private:
-  /// One file with blanks in its name, or more than one.
+  /// One file with blanks in its name, or several files.
   void add_named(const std::string& names) {
     const std::filesystem::path folder = path_.parent_path();
     if (const auto whole = find_beside(folder, names)) return add(*whole);
@@ -50,8 +50,8 @@ class Libraries {
   }
 
   void add(const std::filesystem::path& library) {
-    constexpr std::uint64_t k_most_bytes = std::uint64_t{64} << 20;  // with 100,000 names 600 each
-    // The mesh is of use without.
+    constexpr std::uint64_t k_most_bytes = std::uint64_t{64} << 20;  // 100,000 names of 600 bytes
+    // The mesh is useful without it.
     try {
       for (const MtlMaterial& material : parse_mtl(read_beside(library, k_most_bytes))) {
         const bool is_used = statements_.materials.label_of(material.name).has_value();
@@ -70,7 +70,7 @@ class Libraries {
   std::vector<ObjLibraryMaterial> made_;
 };
 
-/// White, and named as the labels are; what has no name by a name that is free.
+/// White materials, named as the labels are; an empty name is replaced by a free one.
 LabelMeaning named_meaning(std::string name, const ObjNames& names) {
   LabelMeaning made{std::move(name), {}};
   FreeNames free;
@@ -89,7 +89,7 @@ std::vector<ObjLibraryMaterial> read_obj_libraries(
   return Libraries(path, statements, warn).read();
 }
 
-/// With a picture the colour does not count: many writers give it at random then, or as black.
+/// With a picture, the colour is ignored: many writers then give an arbitrary one, or black.
 LabelMeaning meaning_of_materials(const ObjNames& names,
                                   const std::vector<ObjLibraryMaterial>& materials) {
   LabelMeaning made = named_meaning("material", names);

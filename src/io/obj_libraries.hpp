@@ -12,22 +12,22 @@
 
 namespace meshfarm {
 
-/// A material that faces use, and where the library is that has it.
+/// A material that faces use, and the folder of its library.
 struct ObjLibraryMaterial {
   MtlMaterial material;
   std::filesystem::path folder;
 };
 
-/// Those of an OBJ's libraries; of a name the first. Libraries that are not there, or cannot be
-/// read, are named by `warn` and passed over.
+/// The materials of an OBJ's libraries; for each name, the first. Libraries that are missing or
+/// cannot be read are reported to `warn` and skipped.
 std::vector<ObjLibraryMaterial> read_obj_libraries(
     const std::filesystem::path& path, const ObjStatements& statements,
     const std::function<void(const std::string& line)>& warn);
 
-/// What the labels of faces with these materials say; those that no library has are white.
+/// The meaning of labels for faces with these materials; those that no library has are white.
 LabelMeaning meaning_of_materials(const ObjNames& names,
                                   const std::vector<ObjLibraryMaterial>& materials);
-/// The same of groups.
+/// The same for groups.
 LabelMeaning meaning_of_groups(const ObjNames& names);
 
 }  // namespace meshfarm

@@ -19,8 +19,8 @@ class Keeper {
          const std::function<void(const std::string& line)>& warn)
       : pictures_(path.string(), warn) {}
 
-  /// Returns how the pictures of the material lie: as its colours do. All that lie otherwise are
-  /// skipped, as a triangle's corners have one place each.
+  /// Returns the placement of the material's pictures: that of its colours. Pictures with another
+  /// placement are skipped, as a triangle's corners have only one place each.
   MtlMap add(const ObjLibraryMaterial& from, Material& material) {
     const MtlMaterial& read = from.material;
     std::optional<MtlMap> first;
@@ -57,12 +57,12 @@ class Keeper {
       ++skipped_[use.word];
       return;
     }
-    // More than one way to write its name may lead to a file.
+    // Different spellings of a name may lead to the same file.
     const auto found = find_beside(folder, use.map.file);
     const std::string key = found ? found->string() : (folder / use.map.file).string();
     const auto picture =
         pictures_.number_of(key, use.map.file, picture_beside(folder, use.map.file));
-    // What the colours' picture would have covered is as it is said for it.
+    // Even if the picture of the colours is missing, its placement counts.
     if (!first) first = use.map;
     if (picture) material.maps.push_back({use.use, *picture});
   }

@@ -19,21 +19,21 @@ namespace meshfarm {
 struct ObjMaps {
   PictureFiles pictures;
   std::vector<std::string> skipped;  // "map_Ks (3)"
-  std::vector<MtlMap> moves;         // of each label's texture coordinates; none if all stay
+  std::vector<MtlMap> moves;         // of each label's texture coordinates; empty if none moves
 };
 
-/// Gives materials the pictures that their libraries name for them. `meaning` is that of the names.
-/// Pictures that are missing, or are none, are told to `warn` and left out.
+/// Gives the materials the pictures that their libraries name. `meaning` is that of the names.
+/// Pictures that are missing or invalid are reported to `warn` and left out.
 ObjMaps keep_obj_maps(const std::filesystem::path& path, const ObjNames& names,
                       std::span<const ObjLibraryMaterial> libraries, LabelMeaning& meaning,
                       const std::function<void(const std::string& line)>& warn);
 
-/// Triangles that have labels, with texture coordinates as their materials lay them.
+/// Applies the placement of their materials to the texture coordinates of labelled triangles.
 class MovedUvs {
  public:
   using Take = std::function<void(const TriangleView&)>;
   explicit MovedUvs(std::span<const MtlMap> moves) : moves_(moves) {}
-  /// Good until the next call.
+  /// Valid until the next call.
   TriangleView of(const TriangleView& batch);
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is read: "vt" u [v]
+// Input: "vt" u [v]
 #include "obj_places.hpp"
 
 #include <algorithm>

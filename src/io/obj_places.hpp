@@ -15,7 +15,7 @@
 
 namespace meshfarm {
 
-/// An OBJ's text, to be read again and again.
+/// An OBJ's text, which can be read any number of times.
 struct ObjText {
   const InputFile& file;
   TextUnits units;
@@ -23,18 +23,18 @@ struct ObjText {
   TextBlocks blocks() const { return {file, units, threads}; }
 };
 
-/// The texture coordinates that the "vt" statements of an OBJ have: up to 48 MB in memory, more in
-/// a scratch file.
+/// The texture coordinates of an OBJ's "vt" statements: up to 48 MB in memory, more in a scratch
+/// file.
 class ObjPlaces {
  public:
-  /// Reads them; v goes up from the picture's lower side. What is no number is NaN. Throws
-  /// DataError if there are not so many.
+  /// Reads them; v goes up from the picture's lower side. Invalid numbers become NaN. Throws
+  /// DataError if there are not `count` of them.
   ObjPlaces(const ObjText& text, std::uint64_t count);
 
   std::uint64_t size() const { return size_; }
-  /// Threads may ask at the same time.
+  /// Thread-safe.
   const Uv& at(std::uint64_t place) const { return items_[place]; }
-  /// To be told of so many that were asked for, by one thread.
+  /// To be called after `count` lookups, by one thread.
   void used(std::size_t count) { places_.used(count); }
 
  private:
@@ -43,17 +43,18 @@ class ObjPlaces {
   std::uint64_t size_ = 0;
 };
 
-/// How many vertices and texture coordinates come before something.
+/// The numbers of vertices and texture coordinates before a place in the text.
 struct ObjCounts {
   std::uint64_t vertices = 0;
   std::uint64_t places = 0;
 };
 
-/// Those before each of the pieces of a text. `before`: those before all, and then after them.
+/// The counts before each of the pieces of a text. `before`: those before all; updated to those
+/// after them.
 std::vector<ObjCounts> counts_before(std::span<const std::string_view> pieces, const ObjText& text,
                                      ObjCounts& before);
 
-/// An index as faces have it: from 1 on, or backwards from the last of `before`. What is before the
+/// An index as in a face: from 1, or negative, backwards from the last of `before`. One before the
 /// first becomes far too large.
 inline std::uint64_t obj_index(std::int64_t number, std::uint64_t before) {
   return (number < 0 ? before : ~std::uint64_t{0}) + static_cast<std::uint64_t>(number);

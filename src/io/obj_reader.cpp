@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is read:
+// The input:
 //   "v" x y z [w] [r g b]
 //   "f" { v["/"[vt]["/"[vn]]] }   from 1, or backwards from the last vertex before the line: -1
 //   "vt" u [v]                    if textures are kept
 //   "usemtl" name                 of the faces that follow; or "g" or "o", if there is none
-// Textures are read by obj_textures.cpp. All other statements are counted and passed over. '#'
-// begins a comment, and a backslash at a line's end joins the next line to it.
+// Textures are read by obj_textures.cpp. All other statements are counted and skipped. '#' begins a
+// comment, and a backslash at the end of a line joins the next line to it.
 #include "obj_reader.hpp"
 
 #include <algorithm>
@@ -37,9 +37,9 @@ bool ends_statement(std::string_view text, std::size_t at) {
   return at == 0 || text[at - 1] != '\\';
 }
 
-/// Which vertices, or texture coordinates, a face may have.
+/// The vertices, or texture coordinates, that a face may use.
 struct IndexRange {
-  std::uint64_t before = 0;  // the face
+  std::uint64_t before = 0;  // their number before the face
   std::uint64_t all = 0;
 };
 
@@ -76,7 +76,7 @@ CornerWords read_corner(TextScanner& scanner, const IndexRange& vertices) {
   return {vertex, {more, static_cast<std::size_t>(stop - more)}};
 }
 
-/// (0, 0) if the corner has none, or none that is finite. `more`: what follows its vertex.
+/// (0, 0) if the corner has none, or none that is finite. `more`: the text after its vertex.
 Uv read_corner_uv(const TextScanner& scanner, std::string_view more, const ObjPlaces& places,
                   std::uint64_t before) {
   if (more.size() < 2 || more[1] == '/') return {};
@@ -149,14 +149,14 @@ class ObjSource final : public TextSource {
 
  private:
   struct Faces {
-    ObjCounts before;  // the piece; known if there are relative indices
+    ObjCounts before;  // before the piece; known if there are relative indices
     FaceList faces;
     std::vector<std::uint64_t> corners;  // of a face
     std::vector<Uv> uvs;                 // of these
-    std::size_t places = 0;              // that were asked for
+    std::size_t places = 0;              // number of lookups
   };
 
-  /// With texture coordinates as they stand there.
+  /// With the texture coordinates of the file.
   void scan_unmoved(const std::function<void(const TriangleView&)>& take) {
     TriangleMaker maker(info().vertices, take, [this](std::uint64_t v) { return position_of(v); });
     if (info().labels) maker.label(label_names_.label_of("").value_or(0));
@@ -249,7 +249,7 @@ class ObjSource final : public TextSource {
 
   ObjText obj_text() const { return {file(), {line_end(), ends_statement}, threads()}; }
 
-  /// Where there is a texture its colours count, not those of the vertices: writers that have both
+  /// Where there is a texture, its colours replace those of the vertices: writers that have both
   /// mean the same by them.
   void put_textures(std::uint64_t first, std::span<float> values) {
     if (first + values.size() / 3 > info().vertices) fail_changed();
@@ -270,7 +270,7 @@ class ObjSource final : public TextSource {
     points.has_lost_digits = scanner.has_lost_digits();
   }
 
-  /// They are numbers up to 1. What has none is white.
+  /// Colours are numbers up to 1. Vertices without one are white.
   void parse_colours(std::string_view text, bool wide, ChannelPoints& made) const {
     made.points.clear();
     made.values.clear();
@@ -318,13 +318,13 @@ class ObjSource final : public TextSource {
   }
 
   bool has_relative_ = false;
-  std::uint64_t place_count_ = 0;  // texture coordinates, if triangles are to have them
+  std::uint64_t place_count_ = 0;  // of texture coordinates, if triangles are to have them
   std::optional<ObjPlaces> places_;
   ObjMaps maps_;
   std::uint64_t small_faces_ = 0;
   std::unique_ptr<TextureColours> texture_colours_;
   ObjNames label_names_;
-  std::vector<std::string_view> label_words_;  // the statements that are for labels, first theirs
+  std::vector<std::string_view> label_words_;  // read for labels; the one that names them first
 };
 
 }  // namespace

@@ -10,12 +10,12 @@
 
 namespace meshfarm {
 
-/// Whether the first line of the file that is no comment is a statement of OBJ; of a file named
-/// .obj that it is text is enough.
+/// Whether the first line that is no comment is an OBJ statement; for a file named .obj, being text
+/// is enough.
 bool is_obj_file(const InputFile& file);
 
-/// Reads vertices and faces; what else there is is counted by what it is. Throws DataError for
-/// lines that are no statements.
+/// Reads vertices and faces; other statements are counted by kind. Throws DataError for lines that
+/// are no statements.
 std::unique_ptr<MeshSource> open_obj(InputFile file, const OpenOptions& options);
 
 }  // namespace meshfarm

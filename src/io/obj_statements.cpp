@@ -13,7 +13,8 @@
 namespace meshfarm {
 namespace {
 
-/// What is passed over, and what it is; the free-form surfaces by their own words.
+/// The skipped statements and what they are called; those of free-form surfaces keep their own
+/// words.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 11> k_names = {{
     {"vt", "texture coordinates"},
     {"vn", "normals"},
@@ -37,7 +38,7 @@ constexpr std::array<std::string_view, 30> k_more = {
 constexpr std::size_t k_most_words = 64;
 constexpr std::size_t k_most_names = 100'000;
 
-/// Some writers have statements of their own.
+/// Whether it may be a statement of some writer's own.
 bool may_be_statement(std::string_view word) {
   const auto is_letter = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -181,7 +182,7 @@ bool is_obj_file(const InputFile& file) {
   TextScanner scanner(start, line_end_of(start));
   const bool is_named_so = has_extension(file, ".obj");
   if (!scanner.next_value()) return is_named_so;
-  // A group of no name is a line of one letter: too little to tell without the file's name.
+  // Without the file's name, a nameless group is too weak a sign: a line of one letter.
   return is_obj_statement(scanner.word()) && (scanner.has_value() || is_named_so);
 }
 

@@ -14,30 +14,31 @@
 
 namespace meshfarm {
 
-/// Whether it is looked for corners of faces that have texture coordinates.
+/// Whether to look for corners of faces that have texture coordinates.
 enum class FacePlaces : std::uint8_t { passed_over, looked_for };
 
-/// How many statements of which kind an OBJ text has.
+/// How many statements of each kind an OBJ text has.
 struct ObjStatements {
   std::uint64_t vertices = 0;
   std::uint64_t faces = 0;
   bool has_relative = false;  // a face may have a relative index
-  bool has_places = false;    // a face has texture coordinates, if it was looked for them
-  bool has_colours = false;   // a vertex has one
+  bool has_places = false;    // a face has texture coordinates; only if looked for
+  bool has_colours = false;   // a vertex has a colour
   bool has_weights = false;
   std::vector<std::pair<std::string, std::uint64_t>> others;  // by their first words
-  std::vector<std::string> libraries;                         // what follows "mtllib", up to some
+  std::vector<std::string> libraries;                         // what follows "mtllib"; limited
   ObjNames materials;                                         // what follows "usemtl"
   ObjNames groups;                                            // "g"
   ObjNames objects;                                           // "o"
 
   /// At the start of a whole text.
   void begin_text();
-  /// Counts those of a text of whole statements. Throws TextError for what is none.
+  /// Counts the statements of a text that has only whole ones. Throws TextError for a line that is
+  /// none.
   void count(std::string_view text, char line_end, FacePlaces places = FacePlaces::passed_over);
-  /// Adds what follows.
+  /// Adds the counts of the text that follows.
   void add(const ObjStatements& next);
-  /// How many statements that begin with the word, of `others`.
+  /// How many of `others` begin with this word.
   std::uint64_t count_of(std::string_view word) const;
   /// "vertex.colour", "normals (435,545)", ... `kept`: words of statements that are not skipped.
   std::vector<std::string> skipped_names(bool keeps_colours,
@@ -49,7 +50,7 @@ struct ObjStatements {
   void add_name(std::string_view word, std::string_view name);
 };
 
-/// What stands between `at`, in the text, and the end of its line, without blanks around it.
+/// The text from `at` to the end of its line, without blanks around it.
 std::string_view rest_of_line(const char* at, std::string_view text, char line_end);
 
 /// Whether OBJ has statements that begin with the word.

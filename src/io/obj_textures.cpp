@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is read beside what obj_reader.cpp reads; names go to the end of the line:
+// Read in addition to what obj_reader.cpp reads; names extend to the end of the line:
 //   "mtllib" file, or { file }
 //   "usemtl" name              of the faces that follow
 //   "vt" u [v]                 v goes up from the picture's lower side
@@ -32,7 +32,7 @@ float linear_of(double level) {
   return static_cast<float>(linear_of_srgb(level));
 }
 
-/// With a picture the colour does not count: many writers give it at random then, or as black.
+/// With a picture, the colour is ignored: many writers then give an arbitrary one, or black.
 TextureMaterial made_of(const MtlMaterial& material) {
   TextureMaterial made;
   for (std::size_t i = 0; i < 3; ++i) made.plain[i] = linear_of(material.colour[i]);
@@ -42,7 +42,7 @@ TextureMaterial made_of(const MtlMaterial& material) {
   return made;
 }
 
-/// "7", "-1": a number from 1 on, or backwards from the last of `before`. Null if it is none.
+/// "7", "-1": an index from 1, or backwards from the last of `before`. Null if it is none.
 const char* read_index(const char* at, const char* end, std::uint64_t before,
                        std::uint64_t& index) {
   std::int64_t number = 0;
@@ -94,10 +94,10 @@ class Sampling {
   struct Piece {
     ObjCounts before;
     std::vector<CornerTriangle> triangles;
-    /// The materials, by name, and before which of the triangles they begin.
+    /// The materials, by name, each with the index of its first triangle.
     std::vector<std::pair<std::size_t, std::string_view>> uses;
     std::vector<Corner> corners;  // of a face
-    std::vector<Vec3> points;     // of them
+    std::vector<Vec3> points;     // of these
     PolygonCutter cutter;
   };
 
@@ -150,7 +150,7 @@ class Sampling {
       made.triangles.push_back({made.corners[0], made.corners[1], made.corners[2]});
       return;
     }
-    // Cut on the texture: a diagonal outside of the face would colour it by what is beside it.
+    // Cut on the texture: a diagonal outside the face would colour it with what is beside it.
     made.points.clear();
     for (const Corner& corner : made.corners) {
       const TexturePoint at = place_of(corner);
@@ -170,7 +170,7 @@ class Sampling {
     return {static_cast<double>(place[0]), static_cast<double>(place[1])};
   }
 
-  /// Returns the material of what follows.
+  /// Returns the material in use after the piece.
   std::size_t play(const Piece& piece, std::size_t material,
                    const TextureColours::IsWanted& is_wanted, const TextureColours::Add& add) {
     auto use = piece.uses.begin();

@@ -28,7 +28,7 @@ struct ObjMaterials {
 ObjMaterials texture_materials(std::span<const ObjLibraryMaterial> materials);
 
 /// Samples the textures of an OBJ that has some. Null if none can be read. A malformed face gives
-/// no colour: who reads the faces tells of it.
+/// no colour: it is reported when the faces are read.
 std::unique_ptr<TextureColours> sample_obj_textures(const ObjText& text,
                                                     const ObjStatements& statements,
                                                     const ObjMaterials& materials,

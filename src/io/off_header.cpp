@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is read:
+// The input:
 //   header = ["ST"] ["C"] ["N"] "OFF" vertices faces [edges], on one line or more
 //   vertex = x y z [normal, of N] [colour of 3 or 4 values, of C] [s t, of ST]
 //   face   = count corners [any values]
-// '#' begins a comment. "OFF8 6 12" is taken for "OFF 8 6 12": ModelNet is full of them.
+// '#' begins a comment. "OFF8 6 12" is read as "OFF 8 6 12": ModelNet is full of such files.
 #include "off_header.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct Keyword {
   bool has_colour = false;
   bool has_normal = false;
   bool has_fourth = false;      // homogeneous
-  bool has_dimensions = false;  // as many as the file says
+  bool has_dimensions = false;  // the file gives the number of dimensions
   std::size_t size = 0;
 };
 
@@ -102,8 +102,8 @@ class OffHeaderParser {
     return static_cast<std::uint64_t>(count);
   }
 
-  /// Whether no colour at the head of the file has a point: whole numbers go up to 255, others
-  /// to 1.
+  /// Whether no colour at the start of the file has a decimal point: then colours are whole numbers
+  /// up to 255, else numbers up to 1.
   bool has_levels() {
     const char* start = scanner_.at();
     bool any = false;

@@ -9,12 +9,12 @@
 
 namespace meshfarm {
 
-/// Whether the bytes start like an OFF file, of whatever kind.
+/// Whether the bytes start like an OFF file of any kind.
 bool is_off(std::string_view start);
 
-/// What `start`, the first bytes of an OFF file or all of it, declares, in the words of a PLY
-/// header: the bodies of both are lines of numbers, as many as promised. Throws DataError naming
-/// `path` and the line; also for a binary OFF, and for one of other than three dimensions.
+/// The header of an OFF file in terms of a PLY header: both bodies are lines of numbers, as many as
+/// promised. `start`: the first bytes of the file, or all of it. Throws DataError naming `path` and
+/// the line; also for a binary OFF, and for one that does not have three dimensions.
 PlyHeader parse_off_header(std::string_view start, const std::filesystem::path& path);
 
 }  // namespace meshfarm

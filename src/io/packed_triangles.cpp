@@ -15,7 +15,7 @@ std::string pack_triangles(std::span<const Triangle> triangles) {
 
 std::optional<std::vector<Triangle>> unpack_triangles(std::string_view packed) {
   std::array<std::uint16_t, 3> words{};
-  std::vector<Triangle> triangles(packed.size() / sizeof words);  // escaped ones make it fewer
+  std::vector<Triangle> triangles(packed.size() / sizeof words);  // fewer if some are escaped
   std::size_t count = 0;
   std::uint32_t last = 0;
   const char* at = packed.data();

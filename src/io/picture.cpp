@@ -74,8 +74,8 @@ PictureHead read_jpeg_head(std::string_view bytes) {
   fail("a JPEG without a frame");
 }
 
-/// Leaves the chunks that texels are made of. Without the others their levels are what they are,
-/// and there is less for damage to be in.
+/// Keeps only the chunks that define the texels. Without the others the levels are unchanged, and
+/// less can be damaged.
 void drop_other_chunks(std::string& png) {
   constexpr std::array<std::string_view, 4> k_kept{"IHDR", "PLTE", "IDAT", "IEND"};
   constexpr std::size_t k_frame_bytes = 12;
@@ -93,10 +93,10 @@ void drop_other_chunks(std::string& png) {
   png.resize(end);
 }
 
-/// No texels are more than this many times what they are compressed to.
+/// The maximum ratio of texels to their compressed size.
 constexpr std::uint64_t k_most_deflated = 1040;
 
-/// Before they take memory.
+/// Refuses a truncated file before memory is allocated for its texels.
 void check_has_texels(std::string_view png, const PictureHead& head) {
   const std::uint64_t bits = std::uint64_t{head.width} * static_cast<unsigned char>(png[24]);
   if (bits / 8 * head.height / k_most_deflated > png.size()) fail("a damaged PNG: truncated");
@@ -145,7 +145,7 @@ void decode_jpeg(const std::string& bytes, const PictureHead& head, Picture& mad
     return;
   }
   const std::string why = tjGetErrorStr2(decoder.get());
-  // Other warnings are of bytes that many writers leave behind.
+  // Other warnings are about bytes that many writers leave behind.
   const bool is_short = why.find("Premature end") != std::string::npos;
   if (is_short || tjGetErrorCode(decoder.get()) != TJERR_WARNING) fail("a damaged JPEG: " + why);
   made.oddity = why;
@@ -155,7 +155,7 @@ void decode_jpeg(const std::string& bytes, const PictureHead& head, Picture& mad
 
 std::uint64_t PictureHead::memory_bytes() const {
   const std::uint64_t texels = std::uint64_t{width} * height;
-  // The coefficients of all of a progressive JPEG are held, 16 bits each.
+  // All coefficients of a progressive JPEG are held, 16 bits each.
   return texels * ((has_alpha ? 4 : 3) + (is_progressive ? 6 : 0));
 }
 

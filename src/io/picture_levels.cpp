@@ -34,7 +34,7 @@ DecodedLevels::DecodedLevels(const Picture& picture)
   while (levels_.size() < sizes_.size()) add_half();
 }
 
-/// Half as large each way as the last, each texel the mean of up to four.
+/// Half the size of the last in each direction, each texel the mean of up to four.
 void DecodedLevels::add_half() {
   const std::size_t from = levels_.size() - 1;
   const LevelSize fine = sizes_[from];

@@ -37,7 +37,7 @@ std::string encode_png(const Picture& picture, PngSize size) {
   image.format = picture.step == 4 ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
   if (size == PngSize::soon) image.flags |= PNG_IMAGE_FLAG_FAST;
   const std::unique_ptr<png_image, decltype(&png_image_free)> owner(&image, png_image_free);
-  // What bytes that cannot be compressed take, so that they are compressed once.
+  // Room for incompressible bytes, so that one compression is enough.
   png_alloc_size_t taken = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::string bytes(taken, '\0');
   if (png_image_write_to_memory(&image, bytes.data(), &taken, 0, picture.texels.data(), 0,

@@ -10,16 +10,16 @@
 
 namespace meshfarm {
 
-/// How much a JPEG keeps.
+/// The fidelity of a JPEG.
 struct JpegOptions {
   int quality = 92;         // 1 to 100
-  bool full_colour = true;  // colours as fine as the lightness; else half as fine each way
+  bool full_colour = true;  // colour in full resolution; else in half the resolution each way
 };
 
-// The picture's bytes as a file of that format. The same picture gives the same bytes with the same
+// Encodes a picture as a file of that format. The same picture gives the same bytes with the same
 // version of the encoder. Both throw DataError for a picture that the format cannot hold.
 std::string encode_png(const Picture& picture, PngSize size = PngSize::least);
-/// Without alpha.
+/// Drops alpha.
 std::string encode_jpeg(const Picture& picture, const JpegOptions& options = {});
 
 }  // namespace meshfarm

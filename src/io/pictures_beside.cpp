@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t k_most_open = 256;
 
-/// One word that every format can hold, in the folder.
+/// One word that is valid in every format and names a file in the folder itself.
 std::string file_word_of(std::string name) {
   for (char& c : name) {
     const bool is_odd = static_cast<unsigned char>(c) <= ' ' || c == '\x7f' || c == '#' ||
@@ -38,7 +38,7 @@ bool holds(const std::filesystem::path& path, const std::string& bytes) {
   if (std::filesystem::file_size(path, error) != bytes.size() || error) return false;
   try {
     return read_beside(path) == bytes;
-  } catch (const std::exception&) {  // it is replaced, then, or that fails
+  } catch (const std::exception&) {  // it is replaced then, or replacing it fails
     return false;
   }
 }
@@ -56,7 +56,7 @@ const std::string& PicturesBeside::name_of(std::size_t picture) {
   return names_.emplace(picture, free_name(picture)).first->second;
 }
 
-/// A picture that a mesh of this name had already keeps its name.
+/// A picture whose name already begins with the mesh's keeps its name.
 std::string PicturesBeside::free_name(std::size_t picture) {
   const std::filesystem::path wanted = file_word_of(last_part(pictures_.names.at(picture)));
   std::string stem = wanted.stem().string();

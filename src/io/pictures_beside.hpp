@@ -15,18 +15,18 @@
 
 namespace meshfarm {
 
-/// Copies of pictures beside a mesh file that is written, under its name and theirs:
-/// "mesh_atlas.jpg". None has a name that another of the pictures has, so that those of an input
-/// in the same folder stay.
+/// Copies of pictures beside a mesh file that is written, named after the mesh and the picture:
+/// "mesh_atlas.jpg". No copy has the name of another of the pictures, so that those of an input in
+/// the same folder are not replaced.
 class PicturesBeside {
  public:
   PicturesBeside(const std::filesystem::path& mesh, PictureFiles pictures);
 
-  /// The name of a picture's copy, one word, which is the same each time. It will be written.
+  /// The name of a picture's copy, one word; the same for each call. The copy will be written.
   const std::string& name_of(std::size_t picture);
   /// Writes copies under temporary names. Throws IoError, or DataError.
   void finish();
-  /// Of very many copies the last are only written here.
+  /// If there are very many copies, the last are written only here.
   void commit();
 
  private:
@@ -35,7 +35,7 @@ class PicturesBeside {
   std::unique_ptr<AtomicFile> copy_of(std::size_t picture, const std::string& name) const;
 
   std::filesystem::path folder_;
-  std::string before_;  // each name
+  std::string before_;  // prefix of each name
   PictureFiles pictures_;
   std::set<std::string> taken_;
   std::map<std::size_t, std::string> names_;

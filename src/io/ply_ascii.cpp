@@ -18,13 +18,13 @@ namespace meshfarm {
 namespace {
 
 /// Records of an ascii PLY file: each begins on a line of its own. Some writers wrap long ones;
-/// such a record must end where a line does, so that a missing value is still noticed. Blank lines
-/// do not count.
+/// such a record must end at the end of a line, so that a missing value is still noticed. Blank
+/// lines do not count.
 ///
-/// Whole lines are cut into pieces, which threads parse, each as a body of its own. Their records
-/// are taken in order as long as each piece before had nothing odd about it; from there to the last
-/// of those lines records are read one by one. So there is one way to read a record, and messages
-/// tell its line.
+/// Whole lines are divided into pieces, which threads parse, each as a body of its own. Their
+/// records are taken in order as long as no earlier piece had anything odd about it; from there to
+/// the last of those lines, records are read one by one. So there is one way to read a record, and
+/// messages name its line.
 class AsciiBody final : public PlyBody {
  public:
   AsciiBody(std::unique_ptr<ByteStream> stream, const std::filesystem::path& path, char line_end,
@@ -67,7 +67,7 @@ class AsciiBody final : public PlyBody {
       next_record();
       for (std::size_t i = 0; i < element.properties.size(); ++i) {
         const PlyProperty& property = element.properties[i];
-        // A colour of bytes may have a point all the same.
+        // A colour of type byte may still have a decimal point.
         const PlyType type = row.is_axis(i) ? property.type : PlyType::float64;
         row.wants(i) ? row.set(i, read_coordinate(type)) : skip(property);
       }
@@ -115,7 +115,7 @@ class AsciiBody final : public PlyBody {
   }
 
  private:
-  /// What a thread has read.
+  /// The result of a thread.
   struct Piece {
     std::string_view text;
     bool is_clean = false;
@@ -133,7 +133,7 @@ class AsciiBody final : public PlyBody {
     return axis_of;
   }
 
-  /// Of a piece's body: all records.
+  /// For the body of a piece: reads all records.
   void read_vertices_to_end(const PlyElement& element, Batch<Vec3>& batch) {
     const std::vector<std::size_t> axis_of = axes_of(element);
     begin(element);
@@ -183,7 +183,7 @@ class AsciiBody final : public PlyBody {
     ++index_;
   }
 
-  /// Takes the next records from pieces. False if the next one is to be read by itself.
+  /// Takes the next records from pieces. False if the next one must be read by itself.
   template <class Parse, class Take>
   bool read_pieces(const Parse& parse, const Take& take) {
     if (options_.threads < 2 || cursor_.position() < one_by_one_to_) return false;
@@ -218,7 +218,7 @@ class AsciiBody final : public PlyBody {
     try {
       parse(body, piece);
     } catch (const DataError&) {
-      return;  // it is read once more, and the message then tells its place in the file
+      return;  // it is read again, and the message then has its place in the file
     }
     piece.is_clean = body.oddity_.empty();
     piece.records = body.index_;
@@ -252,7 +252,7 @@ class AsciiBody final : public PlyBody {
                     std::to_string(index_) + " of " + std::to_string(element_->count));
   }
 
-  /// Some writers put more on a line than they declare. What comes first is what is declared.
+  /// Some writers put more on a line than they declare. The declared values come first.
   void end_record() {
     const bool is_wrapped = cursor_.line() != line_;
     if (cursor_.end_record()) return;
@@ -300,7 +300,7 @@ class AsciiBody final : public PlyBody {
     }
   }
 
-  /// Those of a face that has too many corners to be kept are not.
+  /// Those of a face with too many corners to be kept are not kept.
   void read_uv_list(const PlyProperty& property) {
     const std::uint64_t count = read_list_length(property);
     const bool are_kept = count % 2 == 0 && count / 2 <= TriangleMaker::k_most_held_corners;
@@ -315,7 +315,7 @@ class AsciiBody final : public PlyBody {
     }
   }
 
-  /// What is below zero wraps around.
+  /// Negative values wrap around.
   Label read_label(const PlyProperty& property) {
     need_value();
     const std::optional<std::int64_t> value = cursor_.whole(property.type);
@@ -346,7 +346,7 @@ class AsciiBody final : public PlyBody {
   }
 
   static constexpr std::size_t k_worth_dividing = std::size_t{64} << 10;
-  static constexpr unsigned k_most_odd_texts = 8;  // records may be wrapped, all of them
+  static constexpr unsigned k_most_odd_texts = 8;  // all records may be wrapped
 
   AsciiCursor cursor_;
   const std::filesystem::path& path_;
@@ -359,7 +359,7 @@ class AsciiBody final : public PlyBody {
   std::uint64_t one_by_one_to_ = 0;  // position in the stream
   unsigned odd_texts_ = 0;
   bool has_lost_digits_ = false;  // in pieces
-  bool has_more_ = false;         // values than are read, and that is to be told
+  bool has_more_ = false;         // more values than are read, to be reported
   std::vector<Uv> uvs_;           // of the face at hand
 };
 

@@ -12,7 +12,7 @@
 namespace meshfarm {
 namespace {
 
-constexpr std::ptrdiff_t k_longest_value = 256;  // longer ones are taken for no number
+constexpr std::ptrdiff_t k_longest_value = 256;  // longer ones count as no number
 
 bool fits(double value, PlyType type) {
   const unsigned bits = 8 * static_cast<unsigned>(size_of(type));
@@ -55,7 +55,7 @@ bool AsciiCursor::end_record() {
   return true;
 }
 
-/// Which has no more values.
+/// The line has no more values.
 void AsciiCursor::leave_line() {
   if (*current_ != line_end_) return skip_record();
   ++current_;
@@ -81,7 +81,7 @@ bool AsciiCursor::has_value() {
   while (true) {
     while (current_ != end_ && is_blank(*current_)) ++current_;
     if (end_ - current_ > k_longest_value) break;
-    // Too near the window's end for a value to be whole in it, unless the file ends here too.
+    // A value may not be whole so near the window's end, unless the file ends here too.
     const bool at_end = current_ == end_;
     refill(k_longest_value + 1);
     if (!at_end || current_ == end_) break;
@@ -101,7 +101,7 @@ void AsciiCursor::skip_value() {
 template <class T>
 std::optional<T> AsciiCursor::parse() {
   const char* first = current_;
-  // The same limit wherever the window ends, or the result would depend on that.
+  // The same limit wherever the window ends; otherwise the result would depend on it.
   const char* limit = end_ - current_ > k_longest_value ? current_ + k_longest_value : end_;
   T value{};
   const char* stop = read_number(first, limit, value);
@@ -110,7 +110,7 @@ std::optional<T> AsciiCursor::parse() {
   return value;
 }
 
-/// By way of a double, which tells what a float loses.
+/// Parses a double first, which shows what a float loses.
 std::optional<double> AsciiCursor::parse_float() {
   const char* start = current_;
   const std::optional<double> wide = parse<double>();

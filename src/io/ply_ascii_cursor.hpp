@@ -12,44 +12,44 @@
 
 namespace meshfarm {
 
-/// Walks over text: lines, and in them values set apart by blanks. Nothing depends on the locale,
-/// and nothing is allocated for a line.
+/// Walks over text: lines, and within them values separated by blanks. Independent of the locale;
+/// allocates nothing per line.
 class AsciiCursor {
  public:
   AsciiCursor(std::unique_ptr<ByteStream> stream, char line_end, std::uint64_t line)
       : stream_(std::move(stream)), line_end_(line_end), line_(line) {}
 
-  /// What follows a '#' that begins a value is passed over from now on, to the end of its line.
+  /// From now on, skips comments: from a '#' that begins a value to the end of its line.
   void pass_comments() { has_comments_ = true; }
 
-  /// The number of the line at hand, from 1.
+  /// The number of the current line, from 1.
   std::uint64_t line() const { return line_; }
 
-  /// Where the cursor stands in the stream.
+  /// The cursor's position in the stream.
   std::uint64_t position() const {
     return stream_->position() + static_cast<std::uint64_t>(current_ - begin_);
   }
 
-  /// Whole lines that lie ahead, as many as one window holds; nothing if the first is too long for
-  /// that. Valid until the cursor moves by other means than pass().
+  /// The whole lines ahead, as many as one window holds; nothing if the first is too long for that.
+  /// Valid until the cursor moves, except by pass().
   std::string_view lines_ahead();
-  /// Steps over the first bytes of those, which have so many lines.
+  /// Skips the first `bytes` bytes of those, which have `lines` lines.
   void pass(std::size_t bytes, std::uint64_t lines);
 
   /// Goes to the next line that is not blank. False if there is none.
   bool next_record();
-  /// Leaves the line at hand. False if it has more values.
+  /// Leaves the current line. False if it has more values.
   bool end_record();
-  /// Leaves the line at hand, whatever is left of it.
+  /// Leaves the current line, whatever is left of it.
   void skip_record();
 
-  /// Whether the line at hand has another value; stands at it then.
+  /// Whether the current line has another value; stops in front of it.
   bool has_value();
-  /// The value ahead. Nothing if it is not what is asked for; then token() tells what it is.
+  /// The value ahead. Nothing if it is not of the type asked for; token() then has its text.
   std::optional<double> real(PlyType type);
-  /// A float is read as a double from now on.
+  /// From now on, floats are read as doubles.
   void read_floats_wide() { floats_are_wide_ = true; }
-  /// Whether the text of a float, so far, had digits that a float does not hold.
+  /// Whether any float so far had more digits than a float holds.
   bool has_lost_digits() const { return has_lost_digits_; }
   std::optional<std::int64_t> whole(PlyType type);
   void skip_value();

@@ -12,7 +12,7 @@
 namespace meshfarm {
 namespace {
 
-/// How many values fit. Sizes are powers of two; a division would be felt once a list.
+/// How many values fit. Sizes are powers of two; a division per list would be noticeable.
 std::uint64_t items_in(std::uint64_t bytes, PlyType type) {
   return bytes >> std::countr_zero(size_of(type));
 }
@@ -144,7 +144,7 @@ class BinaryBody final : public PlyBody {
     batch.add(is_finite(p) ? p : k_no_position);
   }
 
-  /// Reads as many records as are triangles, without a look at each property. Returns how many.
+  /// Reads consecutive records of triangles, without looking at each property. Returns how many.
   std::size_t read_triangle_run(const TriangleLayout& layout, TriangleMaker& maker) {
     const std::string_view window = stream_->window(layout.record_bytes);
     const std::span<WideTriangle> room = maker.batch().room();
@@ -208,7 +208,7 @@ class BinaryBody final : public PlyBody {
     }
   }
 
-  /// Those of a face that has too many corners to be kept are not.
+  /// Those of a face with too many corners to be kept are not kept.
   void read_uv_list(const PlyProperty& property) {
     const std::size_t size = size_of(property.type);
     std::uint64_t left = read_list_length(property);
@@ -235,7 +235,7 @@ class BinaryBody final : public PlyBody {
   }
 
   void check_list_fits(const PlyProperty& property, std::uint64_t count) const {
-    if (!stream_->remaining()) return;  // decompression will tell
+    if (!stream_->remaining()) return;  // decompression will find out
     const std::uint64_t ahead = *stream_->remaining() - size_of(*property.count_type);
     if (count > items_in(ahead, property.type)) {
       fail("list " + property.name + " claims " + std::to_string(count) + " items, but only " +

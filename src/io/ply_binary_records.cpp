@@ -27,7 +27,7 @@ template <class Count, class Index, std::endian Order>
 std::size_t decode(const TriangleLayout& layout, const char* records, std::uint64_t vertices,
                    std::span<WideTriangle> out) {
   const char* list = records + layout.list_offset;
-  // Through int64: a negative index becomes one that is out of any range.
+  // Via int64: a negative index becomes one that is out of any range.
   const auto index = [&list](std::size_t corner) {
     const char* bytes = list + sizeof(Count) + corner * sizeof(Index);
     return static_cast<std::uint64_t>(std::int64_t{load_ply<Index, Order>(bytes)});

@@ -13,22 +13,22 @@
 
 namespace meshfarm {
 
-/// Vertex records of one size: where the coordinates lie in them.
+/// Vertex records of one size: where the coordinates are in them.
 struct VertexLayout {
   std::size_t record_bytes = 0;
   std::array<std::size_t, 3> offsets{};
   std::array<PlyType, 3> types{};
 };
 
-/// `element` has no lists.
+/// `element` must have no lists.
 VertexLayout vertex_layout(const PlyElement& element);
 
 /// Decodes as many records as `out` has room for.
 template <std::endian Order>
 void decode_vertices(const VertexLayout& layout, const char* records, std::span<Vec3> out);
 
-/// Face records of triangles, whose lists are the corners and maybe one more of six values, as
-/// texture coordinates are.
+/// Face records of triangles. Their lists are the corners and possibly another one of six values,
+/// as texture coordinates have.
 struct TriangleLayout {
   struct Six {
     std::size_t offset = 0;  // of its count
@@ -44,24 +44,24 @@ struct TriangleLayout {
   std::optional<Six> six;
 };
 
-/// Nothing if the records are not of that kind.
+/// Nothing if the records are of another kind.
 std::optional<TriangleLayout> triangle_layout(const PlyElement& element);
 
-/// Decodes records up to the first that is no triangle, has an index out of range, or other than
-/// six values where there should be so many. Returns how many.
+/// Decodes records up to the first that is no triangle, has an index out of range, or has other
+/// than six values in a list that must have six. Returns how many.
 template <std::endian Order>
 std::size_t decode_triangles(const TriangleLayout& layout, const char* records,
                              std::uint64_t vertices, std::span<WideTriangle> out);
 
-/// The labels of as many records.
+/// The labels of as many records as `out` has room for.
 template <std::endian Order>
 void decode_labels(const TriangleLayout& layout, const char* records, std::span<Label> out);
 
-/// The six values of as many records, as texture coordinates; those that are not finite are 0.
+/// The six values of as many records, as texture coordinates; values that are not finite become 0.
 template <std::endian Order>
 void decode_uvs(const TriangleLayout& layout, const char* records, std::span<CornerUvs> out);
 
-/// A whole number as it lies in a file; one below zero wraps around.
+/// A whole number as stored in a file; negative ones wrap around.
 template <std::endian Order>
 Label load_label(PlyType type, const char* bytes) {
   return with_ply_value<Order>(type, bytes, [](auto value) { return static_cast<Label>(value); });

@@ -17,7 +17,7 @@
 namespace meshfarm {
 namespace {
 
-/// Records of one size in a row.
+/// Consecutive records of one size.
 struct Records {
   std::uint64_t offset = 0;
   std::uint64_t count = 0;
@@ -96,7 +96,7 @@ class PlyBlocks final : public MeshBlocks {
   Layout layout_;
 };
 
-/// Nothing unless all that is read has one size and the file ends where it should.
+/// Nothing unless all records that are read have one size and the file ends where it should.
 std::optional<PlyBlocks::Layout> layout_of(const PlyHeader& header, std::uint64_t file_bytes) {
   PlyBlocks::Layout layout;
   layout.format = header.format;

@@ -15,7 +15,7 @@ bool is_one_of(const std::array<std::string_view, N>& names, std::string_view na
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Nothing for what cannot be blended.
+/// Nothing for values that cannot be interpolated.
 std::optional<ChannelRole> role_of(const PlyProperty& property) {
   static constexpr std::array<std::string_view, 13> k_colours{
       "red",  "green", "blue",        "alpha",         "r",           "g", "b", "a",
@@ -50,7 +50,7 @@ std::vector<PlyChannel> channels_of(const PlyElement& vertices) {
       channels.push_back({{property.name, type_of(property.type), *role}, i});
     }
   }
-  // Without all three a normal can't be kept at its length.
+  // Without all three, a normal cannot be normalised.
   const auto is_normal = [](const PlyChannel& c) { return c.channel.role == ChannelRole::normal; };
   if (std::count_if(channels.begin(), channels.end(), is_normal) != 3) {
     std::erase_if(channels, is_normal);

@@ -18,18 +18,19 @@
 
 namespace meshfarm {
 
-/// A channel and the property of the vertices that it is.
+/// A channel and its property of the vertices.
 struct PlyChannel {
   Channel channel;
   std::size_t property = 0;
 };
 
-/// The properties of the vertices that can be blended: colours, normals, and other floats, but not
-/// texture coordinates, which seams divide, nor whole numbers, which may be labels.
+/// The properties of the vertices that can be interpolated: colours, normals, and other floats, but
+/// not texture coordinates, which are discontinuous at seams, nor whole numbers, which may be
+/// labels.
 std::vector<PlyChannel> channels_of(const PlyElement& vertices);
 
-/// The property of the faces that says what they belong to: by its name, or because no other is a
-/// whole number. Nothing if there is none.
+/// The property of the faces that is a label: by its name, or because no other is a whole number.
+/// Nothing if there is none.
 std::optional<std::size_t> label_of(const PlyElement& faces);
 
 /// Collects points and their values and hands them on in batches.
@@ -56,7 +57,7 @@ class ChannelBatch {
   ChannelPoints batch_;
 };
 
-/// What is read of a vertex: its position and its channels' values.
+/// The data of a vertex that are read: its position and its channels' values.
 class ChannelRow {
  public:
   ChannelRow(const PlyElement& vertices, std::span<const PlyChannel> channels)
@@ -78,7 +79,7 @@ class ChannelRow {
 
  private:
   static constexpr std::size_t k_none = SIZE_MAX;
-  std::vector<std::size_t> slots_;  // of each property: where in the row it stands
+  std::vector<std::size_t> slots_;  // of each property: its index in the row
   std::vector<double> row_;         // the position, then the channels
   std::vector<float> values_;
 };

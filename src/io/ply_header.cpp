@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The header of a PLY file (Turk 1994), as writers make it:
+// The header of a PLY file (Turk 1994), as real writers make it:
 //   header   = "ply" format line* "end_header"       lines end in LF, CR LF, or CR throughout
 //   format   = "format" ("ascii" | "binary_little_endian" | "binary_big_endian") "1.0"
 //   line     = "comment" ... | "comment TextureFile" file | "obj_info" ... | element property*
@@ -94,7 +94,7 @@ class HeaderParser {
     } else if (words[0] == "property") {
       parse_property(words);
     } else if (header_.elements.empty()) {
-      // Writers are known that forget the word `comment` here, where nothing else can be meant.
+      // Some writers omit the word `comment` here, where nothing else can be meant.
       header_.oddities.push_back(path_.string() + ": header line " + std::to_string(header_.lines) +
                                  ": taken for a comment: " + shown(line));
     } else {
@@ -212,7 +212,7 @@ std::uint64_t PlyElement::record_bytes(PlyFormat format) const {
   return size;
 }
 
-/// Floats hold every integer of 16 bits, doubles every one of 32.
+/// Floats hold every 16-bit integer, doubles every 32-bit one.
 PositionType position_type_of(const PlyElement& vertices) {
   for (const std::size_t axis : vertices.axes) {
     const PlyType type = vertices.properties[axis].type;

@@ -27,10 +27,10 @@ struct PlyProperty {
 /// What the reader does with an element.
 enum class PlyRole : std::uint8_t { other, vertices, faces, strips };
 
-/// What it means that a line of text has more values than are declared.
+/// How to treat a line of text that has more values than are declared.
 enum class MoreValues : std::uint8_t {
-  odd,   // it is told, with the line
-  told,  // it is told that they are not read
+  odd,   // it is reported, with the line
+  told,  // it is reported that they are not read
   known  // it is expected
 };
 
@@ -47,11 +47,11 @@ struct PlyElement {
 
   bool has_late_label() const { return label && *label > index_list; }
   bool has_lists() const;
-  /// Bytes that a record takes in a file; with lists or as text, the fewest it can take.
+  /// Bytes of a record in a file; with lists or as text, the minimum.
   std::uint64_t record_bytes(PlyFormat format) const;
 };
 
-/// What holds the coordinates of these vertices exactly.
+/// The type that holds the coordinates of these vertices exactly.
 PositionType position_type_of(const PlyElement& vertices);
 
 struct PlyHeader {
@@ -60,10 +60,10 @@ struct PlyHeader {
   std::uint64_t size_bytes = 0;
   std::uint64_t lines = 0;
   char line_end = '\n';
-  bool has_comments = false;               // text from '#' to the end of the line, in the body too
-  std::vector<std::string> texture_files;  // of comments that name some
-  std::string title;                       // of what is read like a PLY file, but is none
-  std::vector<std::string> oddities;       // what was let pass; each a line for the user
+  bool has_comments = false;               // from '#' to the end of the line, in the body too
+  std::vector<std::string> texture_files;  // from comments that name them
+  std::string title;                       // of a format that is read like PLY, but is not PLY
+  std::vector<std::string> oddities;       // tolerated oddities; each a line for the user
 
   const PlyElement& vertices() const;
 };
@@ -71,8 +71,8 @@ struct PlyHeader {
 /// Whether the bytes start like a PLY file.
 bool is_ply(std::string_view start);
 
-/// Parses the header that `start`, the first bytes of the file or all of it, begins with, and finds
-/// the vertices and faces in it. Throws DataError naming `path` and the line.
+/// Parses the header at the beginning of `start`, the first bytes of the file or all of it, and
+/// finds the vertices and faces in it. Throws DataError naming `path` and the line.
 PlyHeader parse_ply_header(std::string_view start, const std::filesystem::path& path);
 
 }  // namespace meshfarm

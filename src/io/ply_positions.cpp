@@ -48,7 +48,7 @@ Vec3 PlyPositions::at(std::uint64_t vertex) {
   const std::uint64_t first = number * records_a_block_;
   Block& block = blocks_[number % k_blocks];
   if (block.number != number) {
-    block.number = UINT64_MAX;  // should the read fail
+    block.number = UINT64_MAX;  // in case the read fails
     block.bytes.resize(std::min(records_a_block_, place_.count - first) * record);
     read_(place_.start + first * record, block.bytes);
     block.number = number;

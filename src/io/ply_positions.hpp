@@ -16,14 +16,14 @@
 
 namespace meshfarm {
 
-/// Finds single vertices in a file of records of one size, through a small cache of blocks: what
-/// polygons need, whose corners are mostly near to each other. 1 MB.
+/// Looks up single vertices in a file of records of one size, through a small cache of blocks, of 1
+/// MB. For polygons, whose corners are mostly near each other.
 class PlyPositions {
  public:
-  /// In the mesh file itself, which must outlive this. Nothing if its vertices lie at no known
-  /// place.
+  /// In the mesh file itself, which must outlive this. Null if the file offsets of its vertices are
+  /// not known.
   static std::unique_ptr<PlyPositions> in_file(const InputFile& file, const PlyHeader& header);
-  /// In the scratch file of what was kept, which must outlive this.
+  /// In the scratch file of the kept positions, which must outlive this.
   static std::unique_ptr<PlyPositions> in_scratch(const KeptPositions& kept);
 
   Vec3 at(std::uint64_t vertex);

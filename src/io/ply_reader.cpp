@@ -58,7 +58,7 @@ std::vector<std::string> skipped_names(const PlyHeader& header,
   return names;
 }
 
-/// A count is believed only as far as the file's size allows it. `at`: where the body begins.
+/// Refuses counts that the file is too short for. `at`: where the body begins.
 void check_counts(const PlyHeader& header, std::uint64_t at, std::uint64_t body_bytes,
                   const std::filesystem::path& path) {
   std::uint64_t left = body_bytes;
@@ -78,7 +78,7 @@ void check_counts(const PlyHeader& header, std::uint64_t at, std::uint64_t body_
   }
 }
 
-/// PLY files, and those whose header says as much in other words: OFF.
+/// PLY files, and those with an equivalent header: OFF.
 class PlySource final : public MeshSource {
  public:
   using ParseHeader = PlyHeader (*)(std::string_view start, const std::filesystem::path& path);
@@ -148,7 +148,7 @@ class PlySource final : public MeshSource {
   }
 
   void scan_plain(const std::function<void(const TriangleView&)>& take) {
-    // Goes on where the last scan of the vertices stopped, if that is before all triangles.
+    // Continues where the last scan of the vertices stopped, if that is before all triangles.
     auto [body, next] = std::exchange(parked_, {});
     const auto first = std::find_if(header_.elements.begin(), header_.elements.end(), has_corners);
     if (!body || first - header_.elements.begin() < static_cast<std::ptrdiff_t>(next)) {
@@ -176,13 +176,13 @@ class PlySource final : public MeshSource {
     }
   }
 
-  /// A body that stands before an element.
+  /// A body whose next element is `next`.
   struct Parked {
     std::unique_ptr<PlyBody> body;
     std::size_t next = 0;
   };
 
-  /// Reads all vertices. Returns what follows them.
+  /// Reads all vertices. Returns the body and the next element.
   Parked read_vertices(const std::function<void(std::span<const Vec3>)>& take, Keep keep) {
     std::unique_ptr<PlyBody> body = open_body();
     std::size_t next = 0;
@@ -203,7 +203,7 @@ class PlySource final : public MeshSource {
     info_.positions = PositionType::float64;
   }
 
-  /// Whether the first vertices show it already: then not all of them are read twice.
+  /// Whether the first vertices already show it: this saves reading all of them twice.
   bool has_more_digits_than_floats() const {
     constexpr std::uint64_t k_few = 1024;
     if (header_.format != PlyFormat::ascii || info_.positions != PositionType::float32)
@@ -218,25 +218,25 @@ class PlySource final : public MeshSource {
     try {
       body->read_vertices(few, batch);
     } catch (const DataError&) {
-      return false;  // the scan that is asked for tells what is wrong
+      return false;  // the scan that follows reports the error
     }
     return body->has_lost_digits();
   }
 
-  /// Of polygons alone is this asked. By whatever way is there, or else by another scan.
+  /// Called for polygons only. Uses what there is, or else another scan.
   Vec3 position_of(std::uint64_t vertex) {
     if (store_.is_filled()) return store_.at(vertex);
     if (!positions_) positions_ = PlyPositions::in_file(file_, header_);
     if (positions_) return positions_->at(vertex);
     read_vertices([](std::span<const Vec3>) {}, Keep::always);
-    return position_of(vertex);  // a second scan, should digits have been lost
+    return position_of(vertex);  // a second scan, if digits were lost
   }
 
   static bool has_corners(const PlyElement& element) {
     return element.role == PlyRole::faces || element.role == PlyRole::strips;
   }
 
-  /// To parse or to decompress again takes longer than all else that a scan is for.
+  /// Parsing or decompressing again takes longer than all else that a scan does.
   bool is_worth_keeping() const {
     const bool is_slow =
         header_.format == PlyFormat::ascii || file_.compression() != Compression::none;
@@ -259,7 +259,7 @@ class PlySource final : public MeshSource {
     }
   }
 
-  /// Strips have none, and all triangles or none have labels.
+  /// Strips have none, and either all triangles have labels or none.
   void find_labels() {
     PlyElement* faces = nullptr;
     for (PlyElement& element : header_.elements) {
@@ -271,7 +271,7 @@ class PlySource final : public MeshSource {
     info_.labels = LabelMeaning{faces->properties[*faces->label].name, {}};
   }
 
-  /// The faces that have texture coordinates, or numbers of pictures.
+  /// The faces that have texture coordinates, or indices of pictures.
   PlyElement& textured_faces() {
     return *std::find_if(header_.elements.begin(), header_.elements.end(), [](const auto& element) {
       return element.role == PlyRole::faces && element.count > 0;
@@ -286,7 +286,7 @@ class PlySource final : public MeshSource {
     return made;
   }
 
-  /// Pictures are what materials are of, before all else that labels may mean.
+  /// Pictures belong to materials; these take precedence over all else that labels may mean.
   void read_uvs() {
     textured_faces().uvs = textures_.face_list;
     if (!textures_.files.empty()) textured_faces().label = textures_.numbers;
@@ -337,7 +337,7 @@ class PlySource final : public MeshSource {
     info_.channels = colours_->channels();
   }
 
-  /// A file is scanned more than once, but each warning about it is given once.
+  /// A file is scanned more than once, but each warning about it is given only once.
   void warn(const std::string& line) {
     if (!line.empty() && warnings_.insert(line).second) log_warning(line);
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is read; v goes up from the picture's lower side:
+// The input; v goes up from the picture's lower side:
 //   "comment TextureFile" file               one a picture
 //   of faces, list texcoord: { u v }         one a corner
 //   of faces, texnumber                      which of the pictures, from 0
@@ -98,7 +98,7 @@ std::unique_ptr<TextureColours> sample_ply_textures(const PlySampling& sampling,
     scan([&](const TriangleView& batch) {
       for (std::size_t i = 0; i < batch.size(); ++i) {
         const CornerUvs& uvs = batch.columns.uvs[i];
-        // Those of a face that has none.
+        // The coordinates of a face that has none.
         const bool has_none = uvs == CornerUvs{};
         const std::size_t material = has_none ? materials.size() - 1 : batch.columns.labels[i];
         if (!is_wanted(material)) continue;

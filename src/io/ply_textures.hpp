@@ -19,10 +19,10 @@
 
 namespace meshfarm {
 
-/// What the header of a PLY says of its textures.
+/// The textures that the header of a PLY declares.
 struct PlyTextures {
   std::vector<std::string> files;  // of the pictures
-  /// The faces' list of texture coordinates, or else the vertices' two properties of them, which
+  /// The faces' list of texture coordinates, or else the two properties of the vertices, which
   /// count only if there are pictures.
   std::optional<std::size_t> face_list;
   std::vector<PlyChannel> of_vertices;
@@ -34,14 +34,14 @@ struct PlyTextures {
 
 PlyTextures find_ply_textures(const PlyHeader& header);
 
-/// Makes a material of each picture, and one of what has none. Pictures that are missing, or are
-/// none, are told to `warn` and left out.
+/// Makes one material per picture, and one for triangles without a picture. Pictures that are
+/// missing or invalid are reported to `warn` and left out.
 LabelMeaning keep_ply_pictures(const PlyTextures& textures, const std::filesystem::path& path,
                                const std::function<void(const std::string& line)>& warn,
                                PictureFiles& pictures);
 
-/// The colours that the textures give to vertices; `scan` gives all triangles with their texture
-/// coordinates and the numbers of their pictures. Null if none can be read.
+/// Samples the colours that the textures give to vertices; `scan` gives all triangles with their
+/// texture coordinates and the indices of their pictures. Null if none can be read.
 struct PlySampling {
   const PlyTextures& textures;
   const std::filesystem::path& path;
@@ -58,16 +58,17 @@ std::vector<TextureImage> ply_images(const PlyTextures& textures,
                                      const std::filesystem::path& path);
 
 /// Triangles as they are read, with the texture coordinates of their vertices if they have none of
-/// their own, and the numbers of their pictures; what has none has the number after the last.
+/// their own, and the indices of their pictures; those without a picture have the index after the
+/// last.
 class PlyTexturedBatch {
  public:
   explicit PlyTexturedBatch(const PlyTextures& textures) : textures_(textures) {}
 
-  /// Those of all vertices, in order, before the first batch.
+  /// Adds those of all vertices, in order, before the first batch.
   void begin_vertices(std::uint64_t count) { places_ = ScratchArray<Uv>(count); }
   void add_vertices(const ChannelPoints& batch);
   bool has_vertices() const { return done_ > 0; }
-  /// Good until the next call.
+  /// Valid until the next call.
   TriangleView of(const TriangleView& batch);
 
  private:

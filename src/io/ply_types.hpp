@@ -54,7 +54,7 @@ constexpr bool is_integer(PlyType type) {
   return type != PlyType::float32 && type != PlyType::float64;
 }
 
-/// A value as it lies in a binary file.
+/// A value as stored in a binary file.
 template <class T, std::endian Order>
 T load_ply(const char* bytes) {
   char raw[sizeof(T)];
@@ -97,8 +97,8 @@ double load_real(PlyType type, const char* bytes) {
   return with_ply_value<Order>(type, bytes, [](auto value) { return static_cast<double>(value); });
 }
 
-/// The whole number that `value` is. Nothing if it is none; what lies beyond 64 signed bits, and so
-/// beyond any count or index, becomes the largest.
+/// `value` as a whole number. Nothing if it is not whole; one that exceeds 64 signed bits, and so
+/// any count or index, becomes the largest.
 std::optional<std::int64_t> whole_number(double value);
 
 template <std::endian Order>
@@ -114,7 +114,7 @@ std::optional<std::int64_t> load_whole(PlyType type, const char* bytes) {
   });
 }
 
-/// Text out of a file, as it may stand in a message: short and printable.
+/// Text from a file, made fit for a message: short and printable.
 std::string shown(std::string_view text);
 
 }  // namespace meshfarm

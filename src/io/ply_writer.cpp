@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is written:
+// The output:
 //   header  = "ply" "format binary_little_endian 1.0" ["comment" text]
 //             { "comment TextureFile" name }
 //             "element vertex" N, property (float | double) x, y, z,
@@ -10,8 +10,7 @@
 //             [property list uchar float texcoord, [property int texnumber]]
 //             property (uchar | ushort | uint) of the labels "end_header"
 //   vertex  = x y z values;  face = 3 a b c [6 u v u v u v [texnumber]] [label]
-// A texnumber counts the TextureFiles; -1 is none of them. It is there where triangles differ in
-// it.
+// A texnumber is an index of the TextureFiles, or -1. It is written only if triangles differ in it.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -49,7 +48,7 @@ std::size_t vertex_bytes(const MeshSinkOptions& options) {
   return bytes;
 }
 
-/// Of what the materials need, where it is known how many there are.
+/// As few as the materials need; 4 if their number is not known.
 std::size_t label_bytes(const MeshSinkOptions& options) {
   if (!options.labels) return 0;
   const std::size_t count = options.labels->materials.size();
@@ -57,7 +56,7 @@ std::size_t label_bytes(const MeshSinkOptions& options) {
   return count > std::size_t{UINT8_MAX} + 1 ? 2 : 1;
 }
 
-/// As a word of its own. Materials have the name that other programs give them.
+/// One word. Materials have the name that other programs use.
 std::string label_line(const MeshSinkOptions& options) {
   std::string name = options.labels->name;
   for (char& c : name) {
@@ -71,10 +70,10 @@ std::string label_line(const MeshSinkOptions& options) {
   return "property " + type + " " + name + "\n";
 }
 
-/// Which pictures a mesh with texture coordinates has as colours, and which each material.
+/// The pictures that a mesh with texture coordinates has as colours, and the one of each material.
 struct ColourPictures {
   std::vector<std::size_t> pictures;   // each once, in the order of the materials
-  std::vector<std::int32_t> of_label;  // where it stands among these, or -1
+  std::vector<std::int32_t> of_label;  // index among these, or -1
 
   explicit ColourPictures(const MeshSinkOptions& options) {
     if (!options.uvs || !options.labels) return;
@@ -82,7 +81,7 @@ struct ColourPictures {
       of_label.push_back(number_of(material));
     }
   }
-  /// Whether triangles have different ones.
+  /// Whether they are not all the same.
   bool differ() const {
     return std::any_of(of_label.begin(), of_label.end(),
                        [this](std::int32_t number) { return number != of_label.front(); });

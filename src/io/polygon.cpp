@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t k_most_tests = std::uint64_t{1} << 26;
 
-/// Twice the area, as a vector (Newell): its direction is that from which most of it is seen.
+/// Twice the area, as a vector (Newell): it points to where most of the polygon is seen from.
 Vec3 area_of(std::span<const Vec3> corners) {
   Vec3 sum;
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
@@ -20,7 +20,7 @@ Vec3 area_of(std::span<const Vec3> corners) {
   return sum;
 }
 
-/// Whether all triangles of the fan from the first corner look the way of the whole.
+/// Whether all triangles of the fan from the first corner face the same way as the polygon.
 bool is_fan(std::span<const Vec3> corners, Vec3 normal) {
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
     const Vec3 area = cross(corners[i] - corners[0], corners[i + 1] - corners[0]);
@@ -52,7 +52,7 @@ void PolygonCutter::cut_fan(std::span<const std::uint32_t> corners) {
   }
 }
 
-/// Along the axis that the polygon faces most, so that it still runs counter-clockwise.
+/// Projects along the axis that the polygon faces most, keeping its counter-clockwise orientation.
 void PolygonCutter::project(std::span<const Vec3> corners, Vec3 normal) {
   int axis = 0;
   for (const int other : {1, 2}) {
@@ -77,14 +77,14 @@ void PolygonCutter::clip_ears() {
     } else {
       ++misses;
     }
-    at = (at + 1) % left_.size();  // not the next to an ear again: that would make slivers
+    at = (at + 1) % left_.size();  // not right next to an ear: that would make slivers
   }
   if (left_.size() > 3) ++failed_;
   cut_fan(left_);
 }
 
-/// Whether the corner is convex and the triangle that it would lose holds no other corner, not even
-/// on its edge: what is left would have no area there.
+/// Whether the corner is convex and the triangle that it would cut off contains no other corner,
+/// not even on its edge, where the remaining polygon would have no area.
 bool PolygonCutter::is_ear(std::size_t at) {
   const std::size_t count = left_.size();
   const Point a = points_[left_[(at + count - 1) % count]];

@@ -14,12 +14,12 @@ namespace meshfarm {
 /// Cuts polygons into triangles along diagonals that lie inside.
 class PolygonCutter {
  public:
-  /// The triangles, as places among the corners: a fan from the first corner where that is right,
-  /// as it is of every convex polygon, else by clipping ears (Meisters, "Polygons have ears",
-  /// 1975). What has no area, crosses itself or is not finite becomes a fan as far as there are no
-  /// ears. Good until the next call. `corners` are at least three.
+  /// The triangles, as indices of corners: a fan from the first corner where that is correct, as
+  /// for every convex polygon, else by ear clipping (Meisters, "Polygons have ears", 1975). A
+  /// polygon that has no area, crosses itself or is not finite becomes a fan once there are no ears
+  /// left. Valid until the next call. `corners` are at least three.
   std::span<const std::array<std::uint32_t, 3>> cut(std::span<const Vec3> corners);
-  /// Of how many polygons with an area no right cut was found.
+  /// The number of polygons with an area for which no correct triangulation was found.
   std::uint64_t failed() const { return failed_; }
 
  private:
@@ -38,8 +38,8 @@ class PolygonCutter {
 
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<Point> points_;
-  std::vector<std::uint32_t> left_;  // corners that are not cut off yet
-  std::uint64_t tests_ = 0;          // of this polygon, so that none takes for ever
+  std::vector<std::uint32_t> left_;  // corners that are not yet cut off
+  std::uint64_t tests_ = 0;          // for this polygon; limited, so that none takes for ever
   std::uint64_t failed_ = 0;
 };
 

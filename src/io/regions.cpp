@@ -7,7 +7,7 @@
 namespace meshfarm {
 namespace {
 
-/// A job for fewer regions would mostly open files.
+/// With fewer regions, a job would spend most of its time opening files.
 constexpr std::uint32_t k_least_regions = 4;
 constexpr std::uint32_t k_most_groups = 24;
 

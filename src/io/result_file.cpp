@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // A simplified part, kind "RSLT", little endian. It is written front to back while it is made, so
-// what tells of it comes last.
+// its directory comes last.
 //   result  = head | beside: bytes that are no part of the mesh | rungs, finest first | tail |
 //             where the tail is
 //   head    = "MFRM" | "RSLT" | version u32 | byte order u32 0x01020304
@@ -15,11 +15,11 @@
 //             where it is)
 //   samples = area f64 | points u32 | points, 3 x f64 each, of the part's surface
 //   where   = offset u64 | size u64 | xxh3-64
-// Each section has its own checksum, so that a reader of one rung reads that and the tail only.
+// Each section has its own checksum, so that a reader of one rung reads only that and the tail.
 // Vertices are their positions, then their appearances, 4 x u16 each, if the format says so.
-// Columns are labels, u32 a triangle, then texture coordinates, 6 x f32 a triangle, if it says so.
-// A rung's vertices are the boundary vertices, then those of its blocks. Of a block's vertices
-// there are at most 65536, and as many triangles.
+// Columns are labels, u32 a triangle, then texture coordinates, 6 x f32 a triangle, if the format
+// says so. A rung's vertices are the boundary vertices, then those of its blocks. A block has at
+// most 65536 vertices and as many triangles.
 //   Version 8. Version 1 was sealed, with the counts in front and one set of samples; version 2 had
 //   nothing beside; in version 3 the summary did not say whether a ladder goes on; in version 4
 //   triangles were not packed; version 5 had one checksum for all, at its end; in version 7 samples
@@ -109,7 +109,7 @@ void check_result_head(ByteReader in) {
   if (in.get<std::uint32_t>() != k_result_byte_order) in.fail("written with another byte order");
 }
 
-/// Where little is lost the error is less than what floats round.
+/// Where little was lost, the error is smaller than the rounding of floats.
 constexpr PositionType k_sample_type = PositionType::float64;
 
 std::vector<Vec3> get_sample_points(ByteReader& in) {
@@ -118,7 +118,7 @@ std::vector<Vec3> get_sample_points(ByteReader& in) {
   return get_positions(in, count, k_sample_type);
 }
 
-/// What all rungs have in common, and where they are.
+/// The part that all rungs have in common, and where the rungs are.
 struct ResultTail {
   ResultMesh common;  // the mesh has the boundary vertices only
   VertexFormat format;
@@ -153,7 +153,7 @@ ResultTail get_result_tail(std::string_view bytes, std::string_view what) {
   return tail;
 }
 
-/// Adds the rung to what all have in common.
+/// Adds the rung to the common part.
 void get_rung(std::string_view bytes, const VertexFormat& format, std::string_view what,
               ResultMesh& result) {
   ByteReader in(bytes, what);
@@ -193,7 +193,7 @@ ResultMesh with_rung(ResultTail tail, std::size_t rung, std::string_view bytes,
   return std::move(tail.common);
 }
 
-/// The sections of a whole file, one behind the other from its head to its end.
+/// The sections of a whole file, which must follow each other from its head to its end.
 class WholeResult {
  public:
   WholeResult(std::string_view file, std::string_view what) : file_(file), what_(what) {
@@ -310,7 +310,7 @@ void ResultWriter::put(std::string_view bytes) {
   write_(bytes);
 }
 
-/// What was put since the last one ended.
+/// The section of all bytes put since the previous one ended.
 FileSection ResultWriter::end_section() {
   section_.hash = std::exchange(sum_, {}).value();
   const std::uint64_t end = section_.offset + section_.size;

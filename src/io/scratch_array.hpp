@@ -15,8 +15,8 @@
 
 namespace meshfarm {
 
-/// Items, zero at first, that are written and read in any order: a few in memory, more in a scratch
-/// file without a name in $TMPDIR (or /tmp).
+/// Items, initially zero, that are written and read in any order: a limited number in memory, more
+/// in a scratch file without a name in $TMPDIR (or /tmp).
 template <class T>
 class ScratchArray {
  public:
@@ -39,8 +39,8 @@ class ScratchArray {
   std::span<T> items() { return map_.as_span<T>(); }
   std::uint64_t size() { return items().size(); }
 
-  /// To be told of so many uses. Now and then what is in the scratch file is given back: it stays
-  /// in the page cache as long as there is room for it, which counts for nobody's memory.
+  /// To be called after `count` uses. Now and then it unloads the pages of the scratch file: they
+  /// stay in the page cache as long as there is room, and count as no process's memory.
   void used(std::size_t count) {
     constexpr std::size_t k_seldom = std::size_t{4} << 20;
     since_ += count;

@@ -9,8 +9,8 @@
 
 namespace meshfarm {
 
-/// Items of which nobody knows before how many there will be: the first 48 MB in memory, more in
-/// scratch files as those of ScratchArray.
+/// Items whose number is not known in advance: the first 48 MB in memory, more in scratch files
+/// like those of ScratchArray.
 template <class T>
 class ScratchList {
  public:
@@ -23,7 +23,7 @@ class ScratchList {
     }
     (*this)[count_++] = item;
   }
-  /// To be told of so many uses, as a ScratchArray is.
+  /// To be called after `count` uses, as for a ScratchArray.
   void used(std::size_t count) {
     for (ScratchArray<T>& chunk : chunks_) chunk.used(count);
   }

@@ -23,7 +23,7 @@ namespace {
 constexpr FileKind k_slab_kind = {'S', 'L', 'A', 'B'};
 constexpr std::uint32_t k_slab_version = 2;
 
-/// Ascending, and those of one sheet at one point.
+/// They must be ascending, and those of one sheet at one point.
 void check_apart(const ByteReader& in, const MeshShare& slab) {
   const std::vector<ApartVertex>& apart = slab.apart;
   std::vector<std::uint32_t> place_of_sheet(apart.size(), UINT32_MAX);

@@ -12,7 +12,7 @@ namespace {
 constexpr double k_most = 255;
 using Curve = std::array<double, 256>;
 
-/// x^2.4 for x from 0.05 to 1, without std::pow, the last bits of which differ between machines.
+/// x^2.4 for x from 0.05 to 1, without std::pow, whose last bits differ between machines.
 double to_the_2_4(double x) {
   // x^0.4 is the fifth root of x^2: Newton's method from above.
   const double square = x * x;

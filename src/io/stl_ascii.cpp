@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is read:
+// The input:
 //   file  = { "solid" rest of the line | "endsolid" rest of the line | facet }
 //   facet = "facet" ["normal" x y z] "outer" "loop" 3 * ("vertex" x y z) "endloop" "endfacet"
 // in any case of letters, and with any blanks and lines between the words.
@@ -27,7 +27,7 @@ bool ends_facet(std::string_view text, std::size_t at) {
   if (last == std::string_view::npos || last + 1 < k_word.size()) return false;
   const std::size_t start = last + 1 - k_word.size();
   if (!is_word(before.substr(start, k_word.size()), k_word)) return false;
-  // A solid may have any name.
+  // The name of a solid may be "endfacet", so the word must begin the line.
   for (std::size_t i = start; i > 0; --i) {
     const char c = before[i - 1];
     if (c == text[at]) return true;
@@ -36,8 +36,8 @@ bool ends_facet(std::string_view text, std::size_t at) {
   return true;
 }
 
-/// Goes through the facets of a text that holds whole ones, and calls `corner(scanner)` at the
-/// coordinates of each vertex.
+/// Goes through the facets of a text, all of which must be whole, and calls `corner(scanner)` at
+/// the coordinates of each vertex.
 template <class Corner>
 void for_facets(TextScanner& scanner, const Corner& corner) {
   const auto next = [&](std::string_view expected) {

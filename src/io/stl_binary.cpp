@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is read, all of it little endian:
+// The input, all of it little endian:
 //   file  = 80 bytes of any text, uint32 count, { facet }
 //   facet = float normal[3], float vertex[3][3], uint16 attribute
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr std::uint64_t k_header_bytes = 84;
 constexpr std::uint64_t k_facet_bytes = 50;
 constexpr std::size_t k_corners_at = 12;
 
-/// What a file's size and its count say.
+/// A file's size and its count.
 struct BinaryStl {
   std::uint64_t bytes = 0;
   std::uint64_t claimed = 0;
@@ -35,7 +35,7 @@ struct BinaryStl {
   bool is_as_claimed() const { return is_whole() && whole() == claimed; }
 };
 
-/// Of a compressed file all is read: nothing tells its size.
+/// A compressed file is read to the end, as nothing else tells its size.
 BinaryStl measure(const InputFile& file) {
   BinaryStl made;
   const std::unique_ptr<ByteStream> stream = file.open();
@@ -151,7 +151,7 @@ void take_soup(std::uint64_t triangles, const std::function<void(const TriangleV
 
 bool is_binary_stl_file(const InputFile& file) {
   const bool is_named = has_extension(file, ".stl");
-  // A file that is anything else need not be decompressed to learn that.
+  // No need to decompress a file of another name to learn that it is something else.
   if (file.compression() != Compression::none && !is_named) return false;
   return is_named || measure(file).is_as_claimed();
 }

@@ -13,20 +13,19 @@
 
 namespace meshfarm {
 
-/// The triangles of a soup, as STL is one: triangle t has the vertices 3 t, 3 t + 1 and 3 t + 2.
-/// Vertices at one point are joined by a weld only.
+/// Shows the triangles of a soup, as in STL: triangle t has the vertices 3 t, 3 t + 1 and 3 t + 2.
+/// Vertices at one point are merged only by welding.
 void take_soup(std::uint64_t triangles, const std::function<void(const TriangleView&)>& take);
 
 /// Whether the file is text with facets.
 bool is_ascii_stl_file(const InputFile& file);
-/// Throws DataError for text that is no STL.
+/// Throws DataError for text that is not STL.
 std::unique_ptr<MeshSource> open_ascii_stl(InputFile file, const OpenOptions& options);
 
-/// Whether the file is as long as the triangles that it counts; of a file named .stl that its
-/// length is that of so many triangles, or more, is enough.
+/// Whether the file's size fits its count of triangles; the name .stl is enough, too.
 bool is_binary_stl_file(const InputFile& file);
-/// The size tells how many triangles there are: 84 + 50 n bytes. Only of a file with another size
-/// the count in it is taken, and DataError thrown if it cannot hold as many.
+/// The number of triangles comes from the size: 84 + 50 n bytes. Only if the size is of another
+/// form, the count is used, and DataError thrown if the file is too short for it.
 std::unique_ptr<MeshSource> open_binary_stl(InputFile file, const OpenOptions& options);
 
 }  // namespace meshfarm

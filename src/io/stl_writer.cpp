@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is written, all of it little endian:
+// The output, all of it little endian:
 //   file  = 80 bytes: the comment, or "meshfarm", and zeros; uint32 count; { facet }
 //   facet = float normal[3], float vertex[3][3], uint16 0
 #include <array>
@@ -48,7 +48,7 @@ class StlSink final : public FileSink {
  public:
   StlSink(const std::filesystem::path& path, const MeshSinkOptions& options)
       : FileSink(path, checked_triangles(options)), kept_(PositionType::float32, options.vertices) {
-    // A file that begins with "solid" is taken for text by some readers.
+    // Some readers take a file that begins with "solid" for text.
     std::string comment = options.comment.empty() ? "meshfarm" : "meshfarm: " + options.comment;
     comment.resize(k_comment_bytes);
     write(comment);

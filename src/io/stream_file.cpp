@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A stream, version 1, little endian. Vertices are numbered as they come.
+// A stream, version 1, little endian. Vertices are numbered in the order they come.
 //   stream = head | blocks, until the head's counts are reached | nothing more
 //   head   = "MFRM" | "STRM" | version u32 | byte order u32 0x01020304 | vertex format u8 |
 //            boundary vertices u32 | vertices u64 | triangles u64 | sum
@@ -11,8 +11,8 @@
 //            x u32: 2 x vertex, + 1 at its last use | labels, u32 a triangle, and texture
 //            coordinates, 6 x f32, if the format says so | sum
 //   sum    = xxh3-64 of the sum before it (none in the head) and what stands between the two
-// Of a block's vertices there are at most 65536, and as many triangles; it is never empty. Every
-// vertex is finalised once: where it comes if no triangle uses it, else at its last use.
+// A block has at most 65536 vertices and as many triangles; it is never empty. Every vertex is
+// finalised once: where it comes if no triangle uses it, else at its last use.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -37,13 +37,13 @@ constexpr std::size_t k_head_bytes = 4 + 4 + 4 + 4 + 1 + 4 + 8 + 8;
 constexpr std::size_t k_stream_sum_bytes = 8;
 constexpr std::size_t k_block_head_bytes = 12;
 constexpr std::uint32_t k_most_in_block = 65536;
-constexpr std::uint32_t k_triangles_in_block = 16384;  // what the writer aims at
+constexpr std::uint32_t k_triangles_in_block = 16384;  // the writer's target
 constexpr std::uint64_t k_most_vertices = std::uint64_t{1} << 31;
 constexpr std::size_t k_forget_at = 1 << 16;
 constexpr std::uint8_t k_unfinished = 0;
 constexpr std::uint8_t k_finished = 1;
 
-/// Sums pieces that follow each other, each from the sum before it.
+/// Chains checksums: that of a piece, continued from the previous sum.
 std::uint64_t next_sum(std::uint64_t sum, std::string_view piece) {
   Checksum all;
   all.add({reinterpret_cast<const char*>(&sum), sizeof sum});
@@ -97,7 +97,7 @@ class StreamEncoder {
 
   static std::uint32_t highest_corner(const Triangle& t) { return std::max({t[0], t[1], t[2]}); }
 
-  /// One past the highest vertex of the triangles and of all blocks before.
+  /// One past the highest vertex of the triangles and of all earlier blocks.
   std::uint32_t highest(std::size_t first, std::size_t end) const {
     std::uint32_t vertices = vertices_;
     for (std::size_t i = first; i < end; ++i) {
@@ -106,8 +106,8 @@ class StreamEncoder {
     return vertices;
   }
 
-  /// Where the block that begins with this triangle ends; puts blocks of vertices alone before it
-  /// if the first triangle reaches that far ahead.
+  /// The end of the block that begins with this triangle. First puts blocks of vertices only, if
+  /// the first triangle reaches that far ahead.
   std::size_t end_of_block(std::size_t first) {
     while (highest(first, first + 1) - vertices_ > k_most_in_block) {
       put_block(vertices_ + k_most_in_block, first, first);
@@ -251,7 +251,7 @@ bool StreamReader::next(StreamBlock& block) {
   return true;
 }
 
-/// Gives the new vertices their states.
+/// Adds the states of the new vertices.
 void StreamReader::add_vertices(const StreamBlock& block) {
   states_.resize(states_.size() + block.positions.size(), k_unfinished);
   unfinished_ += block.positions.size();
@@ -288,7 +288,7 @@ void StreamReader::finish_corners(const std::array<StreamCorner, 3>& triangle, s
   }
 }
 
-/// Forgets the states of the oldest vertices, as far as they are finished.
+/// Forgets the states of the oldest vertices, up to the first that is unfinished.
 void StreamReader::forget_finished() {
   const auto first = std::find(states_.begin(), states_.end(), k_unfinished);
   if (static_cast<std::size_t>(first - states_.begin()) < k_forget_at) return;
@@ -329,7 +329,7 @@ Part read_stream(StreamReader& reader) {
   part.positions = info.positions;
   part.boundary_vertices = info.boundary_vertices;
   resize_vertices(part.mesh, info.boundary_vertices, info.appearances);
-  std::vector<std::uint32_t> number;  // in the part, of each vertex of the stream
+  std::vector<std::uint32_t> number;  // of each vertex of the stream: its index in the part
   std::uint32_t boundary = 0;
   StreamBlock block;
   while (reader.next(block)) {

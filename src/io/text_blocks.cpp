@@ -62,7 +62,7 @@ void TextBlocks::fill() {
   }
 }
 
-/// How many of the bytes that are held are whole units.
+/// How many of the held bytes form whole units.
 std::size_t TextBlocks::whole_units() const {
   if (at_end_) return held_;
   const std::string_view text(buffer_.get(), held_);

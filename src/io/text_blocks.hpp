@@ -18,37 +18,37 @@
 
 namespace meshfarm {
 
-/// What is wrong with a text, and where in the memory that holds it.
+/// An error in a text, and its place in the memory that holds it.
 struct TextError {
   const char* at = nullptr;
   std::string why;
 };
 
-/// '\n', or '\r' of a text that has no other.
+/// '\n', or '\r' for a text without '\n'.
 char line_end_of(std::string_view start);
 
-/// Whether the start of a file may be text: it has no byte that is 0.
+/// Whether the start of a file may be text: it has no zero byte.
 bool is_text(std::string_view start);
 
-/// How a text may be divided.
+/// Where a text may be divided.
 struct TextUnits {
   char line_end = '\n';
-  /// Whether what comes after the line end at `at` has nothing to do with what is before it.
+  /// Whether the text after the line end at `at` is independent of the text before it.
   bool (*ends_at)(std::string_view text, std::size_t at) = nullptr;
 };
 
-/// A text in blocks of pieces, one a thread, each of whole units. A unit that is longer than a
-/// block makes the block longer, up to 64 MB.
+/// A text as blocks of pieces, one per thread, each of whole units. A unit that is longer than a
+/// block extends the block, up to 64 MB.
 class TextBlocks {
  public:
   /// `file` must outlive this.
   TextBlocks(const InputFile& file, TextUnits units, unsigned threads);
 
-  /// The pieces of the next block, in order; none at the end. Good until the next call.
+  /// The pieces of the next block, in order; none at the end. Valid until the next call.
   std::span<const std::string_view> next();
-  /// The number of the line that `at`, in the block, lies on.
+  /// The number of the line at `at`, a place in the block.
   std::uint64_t line_of(const char* at) const;
-  /// Throws what was found as a DataError that names file and line.
+  /// Throws the error as a DataError that names file and line.
   [[noreturn]] void fail(const TextError& error) const;
 
  private:
@@ -63,15 +63,15 @@ class TextBlocks {
   std::size_t capacity_;
   std::unique_ptr<char[]> buffer_;
   std::size_t held_ = 0;
-  std::size_t block_ = 0;    // bytes of the block that is given out
-  std::uint64_t lines_ = 0;  // before the block
+  std::size_t block_ = 0;    // bytes of the current block
+  std::uint64_t lines_ = 0;  // before the current block
   bool at_end_ = false;
   std::vector<std::string_view> pieces_;
 };
 
-/// For the pieces of all blocks: calls `prepare(pieces, made)` for those of a block, `parse(text,
-/// made)` for each on so many threads, and `take(made)` in the order of the text. `made` is used
-/// again. What `parse` throws as a TextError becomes a DataError with its line.
+/// For each block: calls `prepare(pieces, made)`, `parse(text, made)` for each of its pieces on up
+/// to `threads` threads, and `take(made)` for each in the order of the text. `made` is reused. A
+/// TextError thrown by `parse` becomes a DataError with its line.
 template <class Made, class Prepare, class Parse, class Take>
 void for_pieces(TextBlocks& blocks, unsigned threads, const Prepare& prepare, const Parse& parse,
                 const Take& take) {

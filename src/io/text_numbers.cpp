@@ -12,7 +12,7 @@
 namespace meshfarm {
 namespace {
 
-/// Near enough for what it is for.
+/// Accurate enough for holds_digits().
 double power_of_ten(long exponent) {
   static constexpr std::array<double, 20> k_small{1,     1e-1,  1e-2,  1e-3,  1e-4,  1e-5,  1e-6,
                                                   1e-7,  1e-8,  1e-9,  1e-10, 1e-11, 1e-12, 1e-13,
@@ -25,9 +25,9 @@ double power_of_ten(long exponent) {
   return power;
 }
 
-/// The power of ten that the last digit of a decimal counts.
+/// The exponent of ten of a decimal's last digit.
 long last_digit(std::string_view text) {
-  // Mostly there are digits behind a point, and no exponent.
+  // The usual case: digits behind a point, and no exponent.
   std::size_t point = text.size();
   while (point > 0 && text[point - 1] >= '0' && text[point - 1] <= '9') --point;
   if (point > 0 && text[point - 1] == '.') return -static_cast<long>(text.size() - point);
@@ -68,7 +68,8 @@ bool holds_digits(double near, double value, std::string_view text) {
   if (text.size() <= k_short || !std::isfinite(near) || !std::isfinite(value)) return true;
   if (std::abs(value) < static_cast<double>(std::numeric_limits<float>::min())) return true;
   constexpr double k_half_a_digit = 0.5 * (1 + 1e-9);
-  // The decimal may lie half a digit off, and its double next to it on the far side.
+  // The decimal may be off by half a digit, and its nearest double by a rounding in the same
+  // direction.
   const double in_double = std::abs(value) * std::numeric_limits<double>::epsilon();
   return std::abs(near - value) <= k_half_a_digit * power_of_ten(last_digit(text)) + in_double;
 }

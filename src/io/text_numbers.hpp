@@ -12,23 +12,23 @@
 
 namespace meshfarm {
 
-/// Whether a decimal that no double can hold is too near zero for it, not too large.
+/// Whether a decimal that no double can hold is too small for it, not too large.
 bool is_tiny(std::string_view text);
 
-/// Whether `near`, written with as many digits as `text` has for `value`, would read like that.
+/// Whether `near`, written with as many digits as `text` has for `value`, reads as the same number.
 bool holds_digits(double near, double value, std::string_view text);
 
-/// The float next to `value`, which was read from `text`. Where its digits say more than a float
-/// holds, `has_lost_digits` becomes true.
+/// The float nearest to `value`, which was read from `text`. Sets `has_lost_digits` where the text
+/// has more digits than a float holds.
 inline double nearest_float(double value, std::string_view text, bool& has_lost_digits) {
-  // Where the nearest float of the text is not that of its nearest double digits are lost, too.
+  // Digits are also lost where the text's nearest float is not that of its nearest double.
   const double near = rounded_to_float(value);
   if (near != value && !has_lost_digits) has_lost_digits = !holds_digits(near, value, text);
   return near;
 }
 
-/// Writes the fewest digits that read as this number again, if they are read as `type`. Takes up to
-/// k_longest_coordinate bytes, and returns what follows them.
+/// Writes the fewest digits that read as the same number of this type. Takes up to
+/// k_longest_coordinate bytes, and returns the end of what was written.
 inline constexpr std::size_t k_longest_coordinate = 32;
 inline char* write_coordinate(char* out, double value, PositionType type) {
   char* end = out + k_longest_coordinate;
@@ -36,9 +36,9 @@ inline char* write_coordinate(char* out, double value, PositionType type) {
                                        : std::to_chars(out, end, value).ptr;
 }
 
-/// Reads the number that the text begins with; nothing depends on the locale. Returns what follows
-/// it, or null if there is none. What is out of range becomes the end of the range, infinity or 0.
-/// `first` is before `limit`.
+/// Reads the number at the start of the text, whatever the locale. Returns its end, or null if
+/// there is no number. Numbers out of range become the end of the range, infinity or 0. `first`
+/// must be before `limit`.
 template <class T>
 const char* read_number(const char* first, const char* limit, T& value) {
   if (*first == '+' && limit - first > 1 && first[1] != '-') ++first;

@@ -13,7 +13,7 @@
 
 namespace meshfarm {
 
-/// Text that lies in memory.
+/// Text in memory.
 class TextStream final : public ByteStream {
  public:
   explicit TextStream(std::string_view text) : begin_(text.data()) {
@@ -34,7 +34,8 @@ class TextStream final : public ByteStream {
   const char* begin_;
 };
 
-/// Text as so many pieces of about equal size, each of whole lines; fewer if lines are long.
+/// Divides text into `pieces` pieces of about equal size, each of whole lines; fewer if lines are
+/// long.
 inline std::vector<std::string_view> pieces_of(std::string_view text, std::size_t pieces,
                                                char line_end) {
   std::vector<std::string_view> made;

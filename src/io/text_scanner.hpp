@@ -13,8 +13,9 @@
 
 namespace meshfarm {
 
-/// Walks over text that lies whole in memory: lines, and in them values set apart by blanks. '#'
-/// begins a comment, and a backslash at a line's end joins the next line to it. Throws TextError.
+/// Walks over text that is completely in memory: lines, and within them values separated by blanks.
+/// '#' begins a comment, and a backslash at the end of a line joins the next line to it. Throws
+/// TextError.
 class TextScanner {
  public:
   TextScanner(std::string_view text, char line_end)
@@ -23,7 +24,7 @@ class TextScanner {
   bool at_end() const { return at_ == end_; }
   const char* at() const { return at_; }
 
-  /// Whether the line at hand has another value; stands at it then.
+  /// Whether the current line has another value; stops in front of it.
   bool has_value() {
     while (true) {
       while (at_ != end_ && is_blank(*at_)) ++at_;
@@ -33,7 +34,7 @@ class TextScanner {
       if (at_ != end_) ++at_;
     }
   }
-  /// Goes to the next value, on whatever line. False if there is none.
+  /// Goes to the next value, on any line. False if there is none.
   bool next_value() {
     while (!has_value()) {
       if (at_ == end_) return false;
@@ -41,7 +42,7 @@ class TextScanner {
     }
     return true;
   }
-  /// Leaves the line at hand, and the lines that are joined to it.
+  /// Leaves the current line, and the lines joined to it.
   void next_line() {
     while (true) {
       const char* start = at_;
@@ -56,7 +57,7 @@ class TextScanner {
     }
   }
 
-  /// The value ahead, which there must be.
+  /// The value ahead, which must exist.
   std::string_view word() {
     const char* start = at_;
     while (!ends_value(at_)) ++at_;
@@ -67,7 +68,7 @@ class TextScanner {
     if (!has_value()) fail_short();
     word();
   }
-  /// A coordinate. `wide`: a double, else a float, of which digits may be lost.
+  /// A coordinate. `wide`: as a double, else as a float, which may lose digits.
   double real(bool wide) {
     if (!has_value()) fail_short();
     double value = 0;
@@ -83,11 +84,11 @@ class TextScanner {
   bool ends_value(const char* at) const {
     return at == end_ || is_blank(*at) || *at == line_end_ || *at == '#' || *at == '\\';
   }
-  /// Where a number that begins here ends at the latest.
+  /// The latest end of a number that begins here.
   const char* limit() const { return end_ - at_ > k_longest_value ? at_ + k_longest_value : end_; }
   void go_to(const char* at) { at_ = at; }
 
-  /// The value ahead, without a step over it.
+  /// The value ahead, without consuming it.
   std::string_view peek() {
     const char* start = at_;
     const std::string_view text = word();
@@ -98,8 +99,8 @@ class TextScanner {
   [[noreturn]] void fail(const std::string& why) const { throw TextError{at_, why}; }
   [[noreturn]] void fail_short() const { fail("the line ends before its last value"); }
 
-  /// Whether the line from `start` to `line_end` ends with a backslash that is no comment's: those
-  /// may be paths.
+  /// Whether the line from `start` to `line_end` ends with a backslash outside a comment: those in
+  /// comments may be paths.
   static bool is_joined(const char* start, const char* line_end) {
     if (line_end != start && line_end[-1] == '\r') --line_end;
     if (line_end == start || line_end[-1] != '\\') return false;
@@ -114,7 +115,7 @@ class TextScanner {
     return next == end_ || *next == line_end_;
   }
 
-  static constexpr std::ptrdiff_t k_longest_value = 256;  // longer ones are taken for no number
+  static constexpr std::ptrdiff_t k_longest_value = 256;  // longer ones count as no number
   const char* at_;
   const char* end_;
   char line_end_;

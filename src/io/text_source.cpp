@@ -34,7 +34,7 @@ void TextSource::look_at_digits() {
   try {
     parse_vertices(pieces.front(), false, points);
   } catch (const TextError&) {
-    return;  // the scan that is asked for tells what is wrong
+    return;  // the scan that follows reports the error
   }
   if (points.has_lost_digits) info_.positions = PositionType::float64;
 }
@@ -64,7 +64,7 @@ void TextSource::read_vertices(const VertexStore::Take& take, VertexStore::Keep 
 }
 
 Vec3 TextSource::position_of(std::uint64_t vertex) {
-  // A second time, should digits have been lost.
+  // At most twice: a second time if digits were lost.
   while (!store_.is_filled()) {
     read_vertices([](std::span<const Vec3>) {}, VertexStore::Keep::always);
   }

@@ -16,15 +16,15 @@
 
 namespace meshfarm {
 
-/// A mesh file of lines that tell what they are: OBJ, ascii STL. No header promises how many there
-/// are, so they are counted when the file is opened.
+/// A mesh file whose lines say what they are: OBJ, ascii STL. No header has their number, so they
+/// are counted when the file is opened.
 class TextSource : public MeshSource {
  public:
   const MeshFileInfo& info() const final { return info_; }
   void scan_vertices(const std::function<void(std::span<const Vec3>)>& take) final;
 
  protected:
-  /// What a thread has read of a piece.
+  /// The result of a thread for a piece.
   struct Points {
     std::vector<Vec3> positions;
     bool has_lost_digits = false;
@@ -33,17 +33,17 @@ class TextSource : public MeshSource {
 
   TextSource(InputFile file, const OpenOptions& options, std::string_view format, EndsUnit ends_at);
 
-  /// Appends the positions that the text has. `wide`: as doubles.
+  /// Appends the positions of the text. `wide`: as doubles.
   virtual void parse_vertices(std::string_view text, bool wide, Points& points) const = 0;
 
-  /// To be called once units are counted. Where the first vertices already have more digits than a
+  /// To be called once units are counted. If the first vertices already have more digits than a
   /// float holds, not all of them need to be read twice.
   void look_at_digits();
 
   TextBlocks blocks() const { return {file_, units_, threads_}; }
   Vec3 position_of(std::uint64_t vertex);
   [[noreturn]] void fail_changed() const;
-  /// Each warning is given once, although a file is scanned more than once.
+  /// Gives each warning only once, although a file is scanned more than once.
   void warn(const std::string& line);
 
   const InputFile& file() const { return file_; }
@@ -63,7 +63,7 @@ class TextSource : public MeshSource {
   std::set<std::string> warnings_;
 };
 
-/// Hands on many items in batches that stay in the near caches.
+/// Passes many items on in batches that stay in the near caches.
 template <class T>
 void take_in_batches(std::span<const T> items,
                      const std::function<void(std::span<const T>)>& take) {

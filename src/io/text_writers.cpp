@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is written:
+// The output:
 //   OBJ: ["#" comment], { "v" x y z [r g b] }, { { "vt" u v }, { "f" a[/t] b[/t] c[/t] } }, from 1;
 //        colours from 0 to 1; labels as obj_labels.cpp has them. A vertex's texture coordinates
 //        come once, before a batch of triangles where one has them first.
@@ -25,12 +25,12 @@
 namespace meshfarm {
 namespace {
 
-/// How one format's lines differ from another's.
+/// The differences between the lines of the formats.
 struct TextForm {
   std::string_view before_vertex;
   std::string_view before_triangle;
   std::uint64_t first_index = 0;
-  bool has_levels = false;   // colours as whole numbers, and an alpha after them
+  bool has_levels = false;   // colours as whole numbers, followed by an alpha
   bool has_columns = false;  // of triangles
 };
 
@@ -104,7 +104,7 @@ class TextSink final : public FileSink {
     out_ = std::to_chars(out_, out_ + k_longest_coordinate, index).ptr;
   }
 
-  /// What the batch's triangles are the first to have.
+  /// Writes the texture coordinates that first occur in this batch.
   void add_uvs(const TriangleView& batch) {
     uv_numbers_.clear();
     for (std::size_t i = 0; i < batch.size(); ++i) {
@@ -129,7 +129,7 @@ class TextSink final : public FileSink {
     write(statement);
   }
 
-  /// The OBJ is the last to come.
+  /// The OBJ is committed last.
   void finish() override {
     if (!labels_) return;
     labels_->finish();
@@ -138,7 +138,7 @@ class TextSink final : public FileSink {
   }
 
   void begin_line(std::string_view word) { out_ = std::copy(word.begin(), word.end(), out_); }
-  /// In the place of the last blank.
+  /// Replaces the last blank.
   void end_line() { out_[-1] = '\n'; }
   void flush() {
     write({buffer_.data(), static_cast<std::size_t>(out_ - buffer_.data())});
@@ -147,10 +147,10 @@ class TextSink final : public FileSink {
 
   static constexpr std::size_t k_longest_line = 2 + 7 * (k_longest_coordinate + 1);
   TextForm form_;
-  std::optional<std::array<std::size_t, 3>> colour_;  // where it stands among the channels
+  std::optional<std::array<std::size_t, 3>> colour_;  // indices among the channels
   std::optional<ObjLabels> labels_;
   std::optional<CornerWedges> wedges_;     // if there are texture coordinates
-  std::uint64_t uvs_ = 0;                  // that are written
+  std::uint64_t uvs_ = 0;                  // written so far
   std::vector<std::uint64_t> uv_numbers_;  // of a batch's corners
   std::vector<char> buffer_ = std::vector<char>(k_most_at_once * k_longest_line);
   char* out_ = buffer_.data();

@@ -11,9 +11,9 @@
 namespace meshfarm {
 namespace {
 
-/// Of a triangle with more texels only some are looked at: about as many as this, on a lattice.
+/// Large triangles are sampled on a lattice: about this many texels at most.
 constexpr double k_most_samples = 4096;
-/// Fewer in a third are too few for their mean.
+/// A third with fewer texels is interpolated instead.
 constexpr std::uint32_t k_least_samples = 3;
 constexpr double k_farthest = 1 << 30;  // in texels
 
@@ -23,7 +23,7 @@ struct Point {
 };
 using Corners = std::array<Point, 3>;
 
-/// Which texel of `size` is shown at `at`.
+/// The texel of `size` that is shown at `at`.
 std::uint32_t wrapped(std::int64_t at, std::uint32_t size, TextureWrap wrap) {
   const std::int64_t count = size;
   if (at >= 0 && at < count) return static_cast<std::uint32_t>(at);
@@ -44,7 +44,7 @@ std::uint32_t wrapped(std::int64_t at, std::uint32_t size, TextureWrap wrap) {
   return static_cast<std::uint32_t>(made);
 }
 
-/// The sum of the texels of a third.
+/// The sum of the texels in a third.
 class Third {
  public:
   void add(const std::uint8_t* texel) {
@@ -69,7 +69,7 @@ class Sampler {
   explicit Sampler(const Texture& texture)
       : texture_(texture), width_(texture.picture.width), height_(texture.picture.height) {}
 
-  /// Adds the texels of the triangle to its thirds. `doubled` is twice its area, with its sign.
+  /// Adds the texels of the triangle to its thirds. `doubled` is twice its signed area.
   void add_texels(const Corners& p, double doubled, std::array<Third, 3>& thirds) const {
     const auto [top, bottom] = std::minmax({p[0].y, p[1].y, p[2].y});
     const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
@@ -79,7 +79,7 @@ class Sampler {
     }
   }
 
-  /// Between the four texels around a point.
+  /// Interpolated between the four texels around a point.
   LinearColour interpolated(Point at) const {
     const double x = std::floor(at.x - 0.5);
     const double y = std::floor(at.y - 0.5);
@@ -106,14 +106,14 @@ class Sampler {
     std::int64_t step = 1;
   };
 
-  /// Every how many texels one is looked at. An odd number meets all texels of a picture that is
-  /// repeated, as their sizes are mostly even.
+  /// The spacing of the sampled texels. An odd number reaches all texels of a picture that is
+  /// repeated, as the sizes of pictures are mostly even.
   static std::int64_t lattice(double area, double extent) {
     const double wanted = std::max(std::sqrt(area / k_most_samples), extent / k_most_samples);
     const auto step = static_cast<std::int64_t>(std::ceil(wanted));
     return std::max<std::int64_t>(1, step + (step % 2 == 0 ? 1 : 0));
   }
-  /// The first texel of the lattice with its centre not before `start`.
+  /// The first texel of the lattice whose centre is not before `start`.
   static std::int64_t first_of(double start, std::int64_t step) {
     const double size = static_cast<double>(step);
     return static_cast<std::int64_t>(std::ceil((start - 0.5) / size)) * step;

@@ -5,8 +5,8 @@
 //
 // A vertex stands for a third of each of its triangles: for the points that are nearer to it than
 // to the other two corners, in barycentric coordinates. Its colour is the mean of the texels whose
-// centres lie in these thirds, each texel once. No texel outside of the triangle counts, so that
-// nothing bleeds in from beside a chart. Where a third has hardly any texel the texture is
+// centres lie in these thirds, each texel once. Texels outside the triangle do not count, so that
+// nothing bleeds in from beside a chart. Where a third has hardly any texels, the texture is
 // interpolated at the third's centroid.
 #pragma once
 
@@ -26,7 +26,7 @@ struct TexturePoint {
   double v = 0;
 };
 
-/// Red, green and blue, linear in the light, from 0 to 1.
+/// Linear red, green and blue, from 0 to 1.
 using LinearColour = std::array<float, 3>;
 
 struct Texture {
@@ -40,7 +40,7 @@ struct ThirdColours {
   double texels = 0;  // the area of the triangle
 };
 
-/// Of a triangle with these corners. Nothing if one is not finite, or very far away.
+/// Averages for a triangle with these corners. Nothing if one is not finite, or very far away.
 std::optional<ThirdColours> average_thirds(const Texture& texture,
                                            const std::array<TexturePoint, 3>& corners);
 

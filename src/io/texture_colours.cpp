@@ -12,14 +12,14 @@
 namespace meshfarm {
 namespace {
 
-/// What a triangle without an area on its texture, or without a texture, counts: little, but it
-/// counts.
+/// The weight of a triangle without an area on its texture, or without a texture: small, but not
+/// zero.
 constexpr double k_least_texels = 1.0 / 4096;
 
 /// Pictures that are decoded together.
 using Group = std::vector<std::size_t>;
 
-/// The pictures of a file, as far as they can be read.
+/// The pictures of a mesh file, as far as they can be read.
 class Pictures {
  public:
   Pictures(std::vector<TextureImage> images, const std::vector<TextureMaterial>& materials,
@@ -33,7 +33,7 @@ class Pictures {
     }
   }
 
-  /// In their order, as many at a time as the memory allows.
+  /// In order, as many at a time as the memory allows.
   std::vector<Group> groups(std::uint64_t memory_bytes) const {
     std::vector<Group> made;
     std::uint64_t bytes = 0;
@@ -49,10 +49,10 @@ class Pictures {
     return made;
   }
 
-  /// Nothing, and a warning, if it is damaged.
+  /// Nothing, after a warning, if it is damaged.
   std::optional<Picture> decoded(std::size_t image) {
     check_memory(image);
-    // A mesh is of use without its colours, and many come without their pictures.
+    // A mesh is useful without its colours, and many come without their pictures.
     try {
       Picture picture = decode_picture(images_[image].load());
       if (!picture.oddity.empty()) warn(image, picture.oddity);
@@ -64,7 +64,7 @@ class Pictures {
   }
 
  private:
-  /// What it takes to decode it; 0 if it cannot be.
+  /// The memory for decoding it; 0 if it cannot be decoded.
   std::uint64_t measured(std::size_t image) {
     try {
       const std::string bytes = images_[image].load();
@@ -75,7 +75,7 @@ class Pictures {
     }
   }
 
-  /// Colours that come or not as the memory is would make another result on another host.
+  /// If colours were dropped for lack of memory, the result would depend on the host.
   void check_memory(std::size_t image) const {
     const std::optional<MemoryRoom> room = available_memory();
     const std::uint64_t most = most_bytes_ != 0 ? most_bytes_ : room ? room->bytes / 2 : UINT64_MAX;
@@ -170,7 +170,7 @@ std::vector<std::string> describe(const std::vector<TextureImage>& images, LostP
       const PictureHead head = read_picture_head(image.load());
       made.push_back(image.name + " (" + std::to_string(head.width) + " x " +
                      std::to_string(head.height) + ")");
-    } catch (const Error& error) {  // the rest of the file is as good as without it
+    } catch (const Error& error) {  // the rest of the file is usable without it
       if (lost == LostPictures::told) made.push_back(image.name + " (" + error.what() + ")");
     }
   }

@@ -20,14 +20,14 @@
 
 namespace meshfarm {
 
-inline constexpr std::uint32_t k_picture_tile = 128;  // texels a side
+inline constexpr std::uint32_t k_picture_tile = 128;  // texels per side
 
-/// Tiles of several pictures that are in memory: those that were used last.
+/// The recently used tiles of several pictures, in memory.
 class TileCache {
  public:
   explicit TileCache(std::uint64_t bytes) : room_(bytes) {}
   using Tile = std::shared_ptr<const std::string>;
-  /// The tile of that number, read if it is not there.
+  /// The tile with this number, read if it is not cached.
   template <class Read>
   Tile tile(std::uint64_t number, const Read& read) {
     const std::lock_guard lock(mutex_);
@@ -54,17 +54,17 @@ class TileCache {
   std::mutex mutex_;
   std::uint64_t room_;
   std::uint64_t used_ = 0;
-  std::list<Entry> order_;  // the one used last is the first
+  std::list<Entry> order_;  // most recently used first
   std::unordered_map<std::uint64_t, std::list<Entry>::iterator> tiles_;
 };
 
-/// A tiled picture of a stage, read tile by tile.
+/// A tiled picture in a stage, read tile by tile.
 class TiledLevels final : public PictureLevels {
  public:
-  /// What a directory tells of it comes next in `in`.
+  /// Reads its entry of a directory from `in`.
   TiledLevels(std::shared_ptr<const SectionedFile> file, ByteReader& in,
               std::shared_ptr<TileCache> cache);
-  /// Among the mesh's pictures.
+  /// Its index among the mesh's pictures.
   std::uint32_t number() const { return number_; }
   const std::vector<LevelSize>& sizes() const override { return sizes_; }
   std::array<Texel, 4> texels(std::size_t level, std::uint32_t x0, std::uint32_t y0,
@@ -83,12 +83,12 @@ class TiledLevels final : public PictureLevels {
   std::vector<FileSection> tiles_;
 };
 
-/// All that a directory tells of. Throws DataError naming `what`.
+/// All pictures of a directory. Throws DataError naming `what`.
 std::vector<std::unique_ptr<TiledLevels>> decode_tiled_pictures(
     std::string_view directory, std::string_view what,
     const std::shared_ptr<const SectionedFile>& file, const std::shared_ptr<TileCache>& cache);
 
-/// All of a file. Throws DataError, UnreadIoError.
+/// All pictures of a file. Throws DataError, UnreadIoError.
 std::vector<std::unique_ptr<TiledLevels>> open_tiled_pictures(
     const Stage& stage, const TiledPicturesRef& pictures, const std::shared_ptr<TileCache>& cache);
 

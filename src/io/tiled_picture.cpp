@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A file of tiled pictures has sections. A tile, of 128 x 128 texels or fewer at the right and
-// lower sides:
+// A file of tiled pictures consists of sections. A tile has 128 x 128 texels, or fewer at the right
+// and lower sides:
 //   texels x 3 x u8, row by row from the top
-// Tiles stand row by row from the top, of the picture first, then of its smaller copies. Last its
-// directory, kind "TILE", version 1; the payload of a sealed file:
+// The tiles are stored row by row from the top, those of the picture first, then those of its
+// smaller copies. The last section is the directory, kind "TILE", version 1; the payload of a
+// sealed file:
 //   pictures u32 x (number u32 | width u32 | height u32 | tiles x (offset u64 | size u64 |
 //   hash u64))
 #include <algorithm>
@@ -29,7 +30,7 @@ std::uint32_t tiles_along(std::uint32_t texels) {
   return (texels + k_picture_tile - 1) / k_picture_tile;
 }
 
-/// Of the tile that begins at `from`.
+/// The side of the tile that begins at `from`.
 std::uint32_t tile_side(std::uint32_t from, std::uint32_t texels) {
   return std::min(k_picture_tile, texels - from);
 }
@@ -38,7 +39,7 @@ std::uint32_t tile_side(std::uint32_t from, std::uint32_t texels) {
 
 PictureFacts picture_facts(std::string_view file) {
   const PictureHead head = read_picture_head(file);
-  // The picture and its copies, four bytes a texel, beside what is decoded.
+  // The picture and its copies, at four bytes per texel, beside the decoded picture.
   const std::uint64_t levels = std::uint64_t{4} * head.width * head.height;
   return {head.width, head.height, head.kind == PictureHead::Kind::jpeg,
           head.memory_bytes() + levels};

@@ -12,8 +12,9 @@
 
 namespace meshfarm {
 
-/// Collects triangles and hands them on in batches, with labels if it was told one before the
-/// first, and with texture coordinates if it is to. Where there are none they cost nothing.
+/// Collects triangles and passes them on in batches, with labels if one was set before the first
+/// triangle, and with texture coordinates if keep_uvs() was called. Where there are none, they cost
+/// nothing.
 class TriangleBatch {
  public:
   using Take = std::function<void(const TriangleView&)>;
@@ -21,13 +22,13 @@ class TriangleBatch {
   /// `take` must outlive this.
   explicit TriangleBatch(const Take& take) : take_(take), triangles_(k_most) {}
 
-  /// Of what is added from now on.
+  /// The label of the triangles that are added from now on.
   void label(Label label) {
     if (label == label_ && !labels_.empty()) return;
     fill_labels();
     label_ = label;
   }
-  /// From now on triangles have texture coordinates: those that are added without any have (0, 0).
+  /// From now on triangles have texture coordinates: those added without any have (0, 0).
   void keep_uvs() { uvs_.resize(k_most); }
   bool has_uvs() const { return !uvs_.empty(); }
 
@@ -40,8 +41,8 @@ class TriangleBatch {
     wrote_uvs(1);
     add(triangle);
   }
-  /// Room for triangles that the caller writes and then counts with added(); before that it tells
-  /// of how many of these it wrote the labels or the texture coordinates, too.
+  /// Room for triangles, which the caller writes and then counts with added(). Before that, the
+  /// caller tells for how many of these it also wrote the labels or the texture coordinates.
   std::span<WideTriangle> room() { return std::span(triangles_).subspan(size_); }
   std::span<Label> label_room() {
     fill_labels();
@@ -87,7 +88,7 @@ class TriangleBatch {
   std::vector<CornerUvs> uvs_;
   std::size_t size_ = 0;
   std::size_t labelled_ = 0;  // of these
-  std::size_t placed_ = 0;    // those that have their texture coordinates
+  std::size_t placed_ = 0;    // how many have their texture coordinates
   Label label_ = 0;
 };
 

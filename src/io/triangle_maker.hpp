@@ -18,10 +18,10 @@
 
 namespace meshfarm {
 
-/// What corners in a row are: those of a polygon, or of a triangle strip (-1 begins another).
+/// The meaning of consecutive corners: a polygon, or a triangle strip (-1 begins another).
 enum class CornerOrder : std::uint8_t { face, strip };
 
-/// Collects items and hands them on in batches.
+/// Collects items and passes them on in batches.
 template <class T>
 class Batch {
  public:
@@ -33,7 +33,7 @@ class Batch {
     items_[size_] = item;
     added(1);
   }
-  /// Room for items that the caller writes and then counts with added().
+  /// Room for items, which the caller writes and then counts with added().
   std::span<T> room() { return std::span(items_).subspan(size_); }
   void added(std::size_t count) {
     size_ += count;
@@ -51,10 +51,10 @@ class Batch {
   std::size_t size_ = 0;
 };
 
-/// Makes triangles of the corners of faces and strips. Of a face with more than three corners the
-/// positions are asked for; it is kept up to k_most_corners, and a longer one is taken for a fan.
-/// The label of a face is that of the batch when its triangles are made: at its end, or earlier if
-/// it is longer than that. Its texture coordinates, if it is to have any, count at its end.
+/// Makes triangles from the corners of faces and strips. For a face with more than three corners,
+/// the positions are requested; it is kept up to k_most_corners, and a longer one becomes a fan. A
+/// face gets the label that the batch has when its triangles are made: at its end, or earlier if it
+/// is longer than that. Its texture coordinates, if it has any, count at its end.
 class TriangleMaker {
  public:
   using PositionOf = std::function<Vec3(std::uint64_t vertex)>;
@@ -66,9 +66,10 @@ class TriangleMaker {
   TriangleMaker(std::uint64_t vertices, const TriangleBatch::Take& take, PositionOf position_of)
       : vertices_(vertices), batch_(take), position_of_(std::move(position_of)) {}
 
-  /// Makes triangles of a face at its end, whatever its length: its label is not known before.
+  /// From now on, makes the triangles of long faces, too, at their end: their label is not known
+  /// before.
   void hold_long_faces() { most_kept_ = k_most_held_corners; }
-  /// Triangles have texture coordinates from now on.
+  /// From now on, triangles have texture coordinates.
   void keep_uvs() {
     hold_long_faces();
     batch_.keep_uvs();
@@ -78,8 +79,8 @@ class TriangleMaker {
     corners_ = 0;
     uvs_ = {};
   }
-  /// Of the corners of the face at hand: as many as it has, or none count. They are to be there
-  /// until its end.
+  /// The texture coordinates of the current face's corners; ignored unless there is one per corner.
+  /// They must stay valid until its end.
   void uvs(std::span<const Uv> of_corners) { uvs_ = of_corners; }
   /// False if there is no such vertex.
   bool corner(std::int64_t index) {
@@ -103,14 +104,14 @@ class TriangleMaker {
     }
   }
 
-  /// Of the face at hand, and of those that follow.
+  /// The label of the current face, and of those that follow.
   void label(Label label) { batch_.label(label); }
 
   std::uint64_t vertices() const { return vertices_; }
   std::uint64_t small_faces() const { return small_faces_; }
-  /// Faces that became fans although that may be wrong.
+  /// The number of faces that became fans although that may be wrong.
   std::uint64_t guessed_faces() const { return long_faces_ + cutter_.failed(); }
-  /// What to tell of them.
+  /// The warning about them.
   std::string guess_warning(const std::filesystem::path& path) const {
     return path.string() + ": " + std::to_string(guessed_faces()) +
            " polygons cross themselves, or have too many corners: they may be triangulated wrongly";
@@ -132,7 +133,7 @@ class TriangleMaker {
       add_to_fan(vertex);
     }
   }
-  /// Of a face that is too long. Its first and its last corner are at the ends of face_.
+  /// Adds a corner of a face that is too long. Its first and last corners are at the ends of face_.
   void add_to_fan(std::uint64_t vertex) {
     for (std::size_t i = 1; corners_ == most_kept_ && i + 1 < corners_; ++i) {
       batch_.add({face_[0], face_[i], face_[i + 1]});
@@ -145,7 +146,7 @@ class TriangleMaker {
     for (std::size_t i = 0; i < corners_; ++i) positions_.push_back(position_of_(face_[i]));
     for (const auto& [a, b, c] : cutter_.cut(positions_)) put(a, b, c);
   }
-  /// A triangle of corners of the face.
+  /// Adds a triangle of corners of the face.
   void put(std::size_t a, std::size_t b, std::size_t c) {
     const WideTriangle triangle{face_[a], face_[b], face_[c]};
     if (uvs_.empty() || uvs_.size() != corners_) {
@@ -159,8 +160,8 @@ class TriangleMaker {
       last_[corners_] = vertex;
       return;
     }
-    // Every second triangle of a strip runs the other way round. A repeated vertex is how strips
-    // are joined into one, not a face.
+    // Every second triangle of a strip has the opposite orientation. A repeated vertex joins strips
+    // and makes no face.
     const bool odd = corners_ % 2 != 0;
     if (last_[0] != last_[1] && last_[1] != vertex && last_[0] != vertex) {
       batch_.add({last_[odd ? 1 : 0], last_[odd ? 0 : 1], vertex});
@@ -178,13 +179,13 @@ class TriangleMaker {
   std::array<std::uint64_t, 2> last_{};
   std::vector<std::uint64_t> face_ = std::vector<std::uint64_t>(16);  // its corners
   std::vector<Vec3> positions_;                                       // of these
-  std::span<const Uv> uvs_;                                           // the same
+  std::span<const Uv> uvs_;                                           // of these
   std::uint64_t small_faces_ = 0;
   std::uint64_t long_faces_ = 0;
 };
 
-/// Takes corners as a TriangleMaker does, and labels and texture coordinates of faces, to hand them
-/// on to one later.
+/// Takes corners like a TriangleMaker, and the labels and texture coordinates of faces, to pass
+/// them on to one later.
 class CornerRecord {
  public:
   explicit CornerRecord(std::uint64_t vertices) : vertices_(vertices) {}
@@ -203,7 +204,7 @@ class CornerRecord {
     return true;
   }
   void end() {}
-  /// Of the face at hand. All have one, or none has.
+  /// The label of the current face. Either all have one, or none has.
   void label(Label label) { labels_.push_back(label); }
   void uvs(std::span<const Uv> of_corners) {
     uv_lengths_.resize(lengths_.size());

@@ -14,7 +14,7 @@
 
 namespace meshfarm {
 
-/// Single positions of those that are kept, which must outlive this.
+/// Looks up single kept positions, which must outlive this.
 class PositionLookup {
  public:
   explicit PositionLookup(const KeptPositions& kept) : kept_(kept) {
@@ -29,11 +29,11 @@ class PositionLookup {
   std::unique_ptr<PlyPositions> in_scratch_;
 };
 
-/// What a source has kept of a scan of its vertices, for the next scans and for single lookups.
+/// The vertices that a source has kept of a scan, for later scans and for single lookups.
 class VertexStore {
  public:
   using Take = std::function<void(std::span<const Vec3>)>;
-  /// `where_possible`: a full disk costs no more than another scan. `always`: it throws IoError.
+  /// `where_possible`: a full disk only costs another scan. `always`: it throws IoError.
   enum class Keep : std::uint8_t { no, where_possible, always };
 
   struct Filling {
@@ -41,12 +41,12 @@ class VertexStore {
     std::uint64_t vertices = 0;
     Keep keep = Keep::no;
   };
-  /// Calls `read`, hands on to `take` what it reads, and keeps that, unless `read` returns false:
-  /// these positions are not the last word.
+  /// Calls `read`, passes on to `take` what it reads, and keeps that, unless `read` returns false:
+  /// then these positions are not final.
   void fill(const Filling& filling, const Take& take, const std::function<bool(const Take&)>& read);
 
   bool is_filled() const { return kept_ != nullptr; }
-  /// Of a filled store.
+  /// These require a filled store.
   void scan(const Take& take) const { kept_->scan(take); }
   Vec3 at(std::uint64_t vertex) {
     if (!lookup_) lookup_ = std::make_unique<PositionLookup>(*kept_);

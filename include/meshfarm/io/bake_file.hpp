@@ -20,19 +20,19 @@ struct BakePart {
   FileRef file;  // a part or a sorted stream
   std::uint32_t boundary_vertices = 0;
 };
-/// Some of the triangles between parts: a section that is a part of its own.
+/// Some of the triangles between parts: a section that is encoded as a part.
 struct BakeSeam {
   Box box;
   FileSection section;
 };
 
-/// What jobs that paint a new texture know beside the stage. The file has the chunks and seams as
-/// sections, and this, their directory, as the last.
+/// What the jobs that paint a new texture know beside the stage. The file holds the chunks and
+/// seams as sections; this directory of them is its last section.
 struct BakeScene {
   std::uint32_t texture_size = 0;
   std::uint32_t margin_texels = 0;
-  double spacing = 0;  // of the texels on the surface, a length
-  double reach = 0;    // how far the result is from the input
+  double spacing = 0;  // texel size on the surface, a length
+  double reach = 0;    // distance of the result from the input
   std::vector<BakePart> parts;
   std::vector<BakeSeam> seams;
   std::vector<FileSection> chunks;
@@ -47,7 +47,7 @@ std::string encode_bake_surface(const BakeSurface& surface);
 /// Throws as above.
 BakeSurface decode_bake_surface(std::string_view bytes, std::string_view what);
 
-/// What a job made of a chunk.
+/// The texels that a job made of a chunk.
 std::string encode_baked_texels(const BakedTexels& texels);
 /// Throws as above.
 BakedTexels decode_baked_texels(std::string_view bytes, std::string_view what);

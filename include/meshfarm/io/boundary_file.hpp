@@ -29,13 +29,13 @@ struct BoundaryCorner {
 };
 using BoundaryTriangle = std::array<BoundaryCorner, 3>;
 
-/// Keeps the first of the triangles that have the same corners, in any order; of their
-/// columns those of the triangles that stay. Returns how many were removed.
+/// Of triangles with the same corners, in any order, keeps the first, and removes the columns of
+/// the others. Returns how many were removed.
 std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles, TriangleColumns& columns);
 std::uint64_t drop_duplicates(std::vector<BoundaryTriangle>& triangles);
 
-/// Puts the triangles between so many parts in the order of their regions (regions.hpp), the order
-/// kept otherwise, and drops duplicates as drop_duplicates() does. Returns how many were removed.
+/// Sorts the triangles between `parts` parts by region (regions.hpp), keeping the order within a
+/// region, and drops duplicates as drop_duplicates() does. Returns how many were removed.
 std::uint64_t order_by_region(std::uint32_t parts, std::vector<BoundaryTriangle>& triangles,
                               TriangleColumns& columns);
 
@@ -44,25 +44,25 @@ struct EncodedBoundary {
   std::string file;
   FileSection index;
 };
-/// Every triangle whose corners lie in two or three of so many parts (Xiong et al. 2008, 3.1
-/// step 4), in the order of order_by_region(), and their columns.
+/// All triangles whose corners lie in two or three of `parts` parts (Xiong et al. 2008, 3.1 step
+/// 4), in the order of order_by_region(), with their columns.
 EncodedBoundary encode_boundary(std::uint32_t parts, const std::vector<BoundaryTriangle>& triangles,
                                 const TriangleColumnsView& columns = {});
 
-/// What a side file has of a region.
+/// A region's entry in a side file's index.
 struct BoundaryRegion {
   std::uint64_t triangles = 0;
   std::uint64_t hash = 0;  // of their bytes
 };
 
-/// Publishes the same file, made a region at a time, of which it holds one.
+/// Publishes the same file, made region by region; holds one region at a time.
 class BoundaryWriter {
  public:
-  /// The folder is for a scratch file.
+  /// `folder` is for a scratch file.
   BoundaryWriter(const std::filesystem::path& folder, std::uint32_t parts);
   /// The triangles of the next region, and their columns.
   void add_region(std::span<const BoundaryTriangle> triangles, const TriangleColumnsView& columns);
-  /// All that were added.
+  /// Those added so far.
   std::uint64_t triangles() const { return triangles_; }
   /// After all regions.
   BoundaryFile publish(const Stage& stage);
@@ -76,27 +76,27 @@ class BoundaryWriter {
 };
 
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what);
-/// With the columns that the file has.
+/// With the columns of the file.
 std::vector<BoundaryTriangle> decode_boundary(std::string_view file, std::string_view what,
                                               TriangleColumns& columns);
-/// Shows every triangle of a side file in order, some at a time with their columns, without holding
-/// the file. Does not check the file's checksum: that is up to the caller's `fill`.
+/// Shows every triangle of a side file in order, in batches with their columns, without holding the
+/// file in memory. Does not check the file's checksum: that is up to the caller's `fill`.
 void scan_boundary(
     const Fill& fill, std::string_view what,
     const std::function<void(std::span<const BoundaryTriangle>, const TriangleColumnsView&)>& show);
 
-/// All triangles of the files, with the columns that these have.
+/// All triangles of the files, with their columns.
 std::vector<BoundaryTriangle> read_boundary(const Stage& stage, const BoundaryFiles& files,
                                             TriangleColumns& columns);
 std::vector<BoundaryTriangle> read_boundary(const Stage& stage, const BoundaryFiles& files);
 
-/// Reads the triangles of some regions without reading the others. A file is opened when a region
-/// of it is asked for.
+/// Reads the triangles of single regions without reading the others. A file is opened when one of
+/// its regions is first asked for.
 class BoundaryRegions {
  public:
   BoundaryRegions(const Stage& stage, BoundaryFiles files, std::uint32_t parts);
   /// Appends the triangles of a region, with their columns. Throws as SectionedFile does, and
-  /// DataError for an index that is none, or is of other parts.
+  /// DataError for a malformed index or one for other parts.
   void read(std::uint32_t region, std::vector<BoundaryTriangle>& triangles,
             TriangleColumns& columns);
 

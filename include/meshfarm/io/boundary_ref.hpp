@@ -14,17 +14,17 @@ namespace meshfarm {
 /// One of the side files (boundary_file.hpp) that hold the triangles between parts.
 struct BoundaryFile {
   FileRef file;
-  FileSection index;               // of that file
-  std::uint32_t first_region = 0;  // it has the triangles from here to the next file's first
+  FileSection index;               // in that file
+  std::uint32_t first_region = 0;  // it has the regions from here up to the next file's first
 };
-/// All of them, by their regions. A cut makes one; jobs make some (divide/block_cut.hpp).
+/// All of them, ordered by region. A cut makes one; jobs make several (divide/block_cut.hpp).
 using BoundaryFiles = std::vector<BoundaryFile>;
 
 std::uint64_t bytes_of(const BoundaryFiles& files);
 
-/// As they stand in parameters: u32 x (file | index section | first region u32).
+/// As encoded in job parameters: u32 x (file | index section | first region u32).
 void put_boundary(ByteWriter& out, const BoundaryFiles& files);
-/// None begins before the one before it; the first begins with region 0.
+/// The first begins with region 0, and none begins before its predecessor.
 BoundaryFiles get_boundary(ByteReader& in);
 
 }  // namespace meshfarm

@@ -13,16 +13,16 @@
 
 namespace meshfarm {
 
-// What jobs make of blocks of a mesh's file (divide/block_cut.hpp): a staged file each, with a
-// section for each part that the block has something of.
+// What jobs make of the blocks of a mesh file (divide/block_cut.hpp): one staged file per block,
+// with a section for each part that the block has data of.
 
-/// What is known of a bundle of vertices, beside its file.
+/// The facts of a vertex bundle that are known without its file.
 struct VertexBundle {
-  FileSection directory;  // which parts' vertices are where
-  FileSection runs;       // the part of each vertex of the block, and its place there
+  FileSection directory;  // where each part's vertices are
+  FileSection runs;       // the part of each vertex of the block, and its index there
   FileSection crowds;     // the first vertices at points that have too many
   std::uint64_t merged = 0;
-  /// How many vertices of which parts it has, ascending by part; nothing if that is not told.
+  /// How many vertices it has of which parts, ascending by part; nothing if not recorded.
   struct OfPart {
     std::uint32_t part = 0;
     std::uint32_t count = 0;
@@ -30,22 +30,22 @@ struct VertexBundle {
   };
   std::optional<std::vector<OfPart>> parts = {};
 };
-/// Which bundle lies where, in the order of the blocks.
+/// A bundle and its file. They are in the order of the blocks.
 struct VertexBundleRef {
   FileRef file;
   VertexBundle bundle;
 };
 
-/// What is known of a bundle of triangles.
+/// The same for a bundle of triangles.
 struct TriangleBundle {
   FileSection directory;
-  FileSection seams;                  // where those between parts are, by groups of regions
-  std::uint64_t seam_triangles = 0;   // these are so many
-  std::uint64_t dropped = 0;          // those that use a vertex without a position
-  std::uint64_t points_left_out = 0;  // those whose corners are all one vertex
-  FileSection vertices;               // which bundles all vertices of the mesh are in
-  std::uint32_t groups = 0;           // of regions that `seams` has some of: a bit each
-  /// The parts that it has triangles of, ascending; nothing if that is not told.
+  FileSection seams;                  // where the triangles between parts are, by group of regions
+  std::uint64_t seam_triangles = 0;   // how many triangles lie between parts
+  std::uint64_t dropped = 0;          // triangles that use a vertex without a position
+  std::uint64_t points_left_out = 0;  // triangles whose corners are all one vertex
+  FileSection vertices;               // which bundles hold all vertices of the mesh
+  std::uint32_t groups = 0;           // the groups of regions that occur in `seams`, one bit each
+  /// The parts that it has triangles of, ascending; nothing if not recorded.
   std::optional<std::vector<std::uint32_t>> parts = {};
 };
 struct TriangleBundleRef {
@@ -53,7 +53,7 @@ struct TriangleBundleRef {
   TriangleBundle bundle;
 };
 
-/// All of a mesh that was scattered.
+/// All bundles of a mesh that was scattered.
 struct BundlesOfMesh {
   PositionType positions = PositionType::float32;
   std::uint32_t parts = 0;
@@ -61,7 +61,7 @@ struct BundlesOfMesh {
   std::vector<TriangleBundleRef> triangles;
 };
 
-/// Of an entry of what a bundle tells that it has.
+/// The part of an entry of a bundle's list of parts.
 inline std::uint32_t part_of(std::uint32_t part) {
   return part;
 }
@@ -69,9 +69,9 @@ inline std::uint32_t part_of(const VertexBundle::OfPart& of) {
   return of.part;
 }
 
-/// Those bundles that have something of these parts, or may have; they do not tell what.
+/// The bundles that have, or may have, data of these parts. Their own lists of parts are left out.
 BundlesOfMesh bundles_of_parts(const BundlesOfMesh& all, PartRange parts);
-/// Those bundles of triangles that have some between parts in this group of regions.
+/// The bundles of triangles that have triangles between parts in this group of regions.
 BundlesOfMesh bundles_of_group(const BundlesOfMesh& all, std::uint32_t group);
 
 }  // namespace meshfarm

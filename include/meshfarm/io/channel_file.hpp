@@ -16,9 +16,9 @@
 
 namespace meshfarm {
 
-/// What a stage keeps of the input's channels.
+/// The input's channels in a stage.
 struct StagedChannels {
-  std::vector<Channel> channels;  // none: there is no file
+  std::vector<Channel> channels;  // empty: there is no file
   FileRef file;
   std::uint64_t points = 0;
 };
@@ -30,14 +30,14 @@ StagedChannels stage_channels(MeshSource& source, const Stage& stage,
 
 /// A picture of the input's materials.
 struct StagedPicture {
-  std::string name;  // of the file that it was
+  std::string name;  // of its original file
   FileRef file;
 };
 
 /// Stages the pictures of the source's materials, byte for byte.
 std::vector<StagedPicture> stage_pictures(const MeshSource& source, const Stage& stage);
 
-/// Those of a stage.
+/// The pictures of a stage.
 PictureFiles pictures_of(const Stage& stage, std::vector<StagedPicture> pictures);
 
 /// Reads the file block by block. Throws DataError naming `what` for anything that stage_channels

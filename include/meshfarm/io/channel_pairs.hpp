@@ -12,20 +12,20 @@
 
 namespace meshfarm {
 
-/// Channels that two meshes both have and that are compared as one.
+/// Channels that both meshes have and that are compared as one.
 struct ChannelPair {
-  std::string name;  // "colours" and "normals" of three channels, else the channel's
-  ChannelRole role = ChannelRole::quality;  // of normals only where all three are there
+  std::string name;  // "colours" and "normals" for three channels, else the channel's
+  ChannelRole role = ChannelRole::quality;  // normals only where all three are there
   std::size_t columns = 1;
 };
 
 /// Which channels two meshes, A and B, have in common.
 struct ChannelPairs {
   std::vector<ChannelPair> pairs;
-  /// Where the channels of the pairs stand, one after the other.
+  /// The indices of the pairs' channels, pair by pair.
   std::vector<std::size_t> columns_a;
   std::vector<std::size_t> columns_b;
-  /// The names of what only one of them has.
+  /// The names of channels that only one of them has.
   std::vector<std::string> only_a;
   std::vector<std::string> only_b;
 };
@@ -33,8 +33,8 @@ struct ChannelPairs {
 /// Channels are the same if their names and roles are; their types may differ.
 ChannelPairs pair_channels(std::span<const Channel> a, std::span<const Channel> b);
 
-/// The values of these channels of all vertices, so many as `vertices` if that is known. Components
-/// of colours come as colour_level() makes them, all else as it is.
+/// The values of these channels for all vertices, of which there are `vertices` if that is known.
+/// Components of colours are as colour_level() gives them, all else is unchanged.
 std::vector<float> read_columns(MeshSource& source, std::span<const std::size_t> columns,
                                 std::uint64_t vertices = 0);
 

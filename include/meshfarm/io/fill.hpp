@@ -9,7 +9,7 @@
 
 namespace meshfarm {
 
-/// Fills a buffer with a file's next bytes, all of it, or throws.
+/// Fills the whole buffer with a file's next bytes, or throws.
 using Fill = std::function<void(std::span<char>)>;
 
 /// A fill that reads from bytes in memory, which must outlive it. Throws DataError naming `what`.

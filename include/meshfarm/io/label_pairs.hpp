@@ -9,16 +9,16 @@
 
 namespace meshfarm {
 
-/// The labels of a mesh's triangles and what they say.
+/// The labels of a mesh's triangles and their meaning.
 struct MeantLabels {
   const LabelMeaning& meaning;
   std::vector<Label> labels;
 };
 
-/// Writes numbers for the labels of two meshes so that the same numbers are the same labels. Those
-/// that both have names are the same if their names are, whatever stands for blanks in them. A
-/// number has the name that it gets where it becomes a material; where the other mesh has no such
-/// name, numbers are compared as they are.
+/// Renumbers the labels of two meshes so that equal numbers mean equal labels. If both have names,
+/// labels are equal if their names are, whatever replaces blanks in them. A label that is only a
+/// number has the name that it gets as a material; where the other mesh has no such name, numbers
+/// are compared as they are.
 void pair_labels(MeantLabels& a, MeantLabels& b);
 
 }  // namespace meshfarm

@@ -14,13 +14,13 @@
 
 namespace meshfarm {
 
-/// What a texture shows beyond its sides.
+/// What a texture shows outside its bounds.
 enum class TextureWrap : std::uint8_t { repeat, mirror, clamp };
 
-/// What a picture says of a material.
+/// The property of a material that a picture gives.
 enum class MapUse : std::uint8_t { colour, normal, metal_and_roughness, occlusion, emission };
 
-/// A picture that a material has, by its number among the mesh's.
+/// A picture of a material, by its index among the mesh's pictures.
 struct MaterialMap {
   MapUse use = MapUse::colour;
   std::uint32_t picture = 0;
@@ -28,21 +28,21 @@ struct MaterialMap {
   bool operator==(const MaterialMap&) const = default;
 };
 
-/// A material as far as every format has a place for it.
+/// A material, reduced to what every format has a place for.
 struct Material {
   std::string name;
   std::array<float, 4> colour{1, 1, 1, 1};  // linear red, green, blue, and alpha, 0 to 1
-  std::vector<MaterialMap> maps = {};       // by the triangles' texture coordinates
+  std::vector<MaterialMap> maps = {};       // placed by the triangles' texture coordinates
   TextureWrap wrap_u = TextureWrap::repeat;
   TextureWrap wrap_v = TextureWrap::repeat;
 
   bool operator==(const Material&) const = default;
 };
 
-/// What the labels of a mesh's triangles say.
+/// The meaning of the labels of a mesh's triangles.
 struct LabelMeaning {
-  std::string name;                 // "material", "group", or as the file's property has it
-  std::vector<Material> materials;  // of the labels 0, 1, ...; none where labels are only numbers
+  std::string name;                 // "material", "group", or the name of the file's property
+  std::vector<Material> materials;  // of the labels 0, 1, ...; empty if labels are only numbers
 
   bool operator==(const LabelMeaning&) const = default;
 };
@@ -67,10 +67,10 @@ struct TriangleView {
   TriangleColumnsView columns;
 };
 
-/// The pictures that materials have, as whole files.
+/// The pictures of materials, as whole files.
 struct PictureFiles {
-  std::vector<std::string> names;  // of files, with an extension that says what they are
-  /// The bytes of one. Throws IoError, or DataError, if it cannot be read any more.
+  std::vector<std::string> names;  // of files, with an extension that fits the content
+  /// The bytes of one. Throws IoError, or DataError, if it can no longer be read.
   std::function<std::string(std::size_t picture)> load;
 };
 

@@ -33,21 +33,21 @@ struct PartEntry {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
   std::uint32_t boundary_vertices = 0;
-  /// Of a part, as it was shared out: before triangles were dropped and vertices welded. Whoever
-  /// simplifies a part goes by these, as they are known before any part is made.
+  /// Of a part as it was assigned: before triangles were dropped and vertices welded. The
+  /// simplification of a part goes by these counts, since they are known before any part is made.
   std::uint64_t shared_triangles = 0;
   std::uint32_t shared_boundary = 0;
 };
 
-/// So that a message has room for the names of all.
+/// Limited so that one message has room for the names of all.
 inline constexpr std::uint32_t k_most_cut_blocks = 288;
 
-/// A cut that the first jobs of a run do, over blocks of the input's records.
+/// A cut that is done by the first jobs of a run, over blocks of the input's records.
 struct Cutting {
   std::string path;             // of the input, as all hosts see it
-  std::uint64_t bytes = 0;      // that it has
-  std::int64_t changed_ns = 0;  // when it was written last
-  std::uint32_t parts = 0;      // asked for
+  std::uint64_t bytes = 0;      // its size
+  std::int64_t changed_ns = 0;  // when it was last written
+  std::uint32_t parts = 0;      // as asked for
   std::uint32_t vertex_blocks = 0;
   std::uint32_t triangle_blocks = 0;
   friend bool operator==(const Cutting&, const Cutting&) = default;
@@ -61,56 +61,57 @@ Cutting get_cutting(ByteReader& in);
 
 /// What a cut made of one input: everything a run needs to know. Published last, never changed.
 struct Manifest {
-  std::string input;         // the path as it was given, for people
+  std::string input;         // the path as given, for people
   std::string input_format;  // "PLY ascii, gzip"
   Scheme scheme = Scheme::cut;
-  std::string partitioner;             // of the cut: "METIS 5.1.0"
+  std::string partitioner;             // that made the cut: "METIS 5.1.0"
   std::uint64_t window_triangles = 0;  // of a sweep's buffer
   PositionType positions = PositionType::float32;
   Box box;
   std::uint64_t input_vertices = 0;
-  std::uint64_t input_triangles = 0;  // after fans and strips were made triangles
-  /// Vertices at the place of an earlier one, with --weld exact. They are merged, except where
-  /// surfaces touch. How many of them are depends on the seams; this number does not.
+  std::uint64_t input_triangles = 0;  // after fans and strips were split
+  /// Vertices at the position of an earlier one, with --weld exact. They are merged, except where
+  /// surfaces touch. How many are merged depends on the seams; this number does not.
   std::uint64_t coincident_vertices = 0;
-  std::uint64_t dropped_degenerate = 0;  // of the parts and the boundary; depends on the seams
-  /// Triangles with two corners at one position: what people are told. They are dropped as
+  std::uint64_t dropped_degenerate = 0;  // in the parts and the boundary; depends on the seams
+  /// Triangles with two corners at one position: the number reported to people. They are dropped as
   /// degenerate, except where surfaces touch.
   std::uint64_t coincident_corners = 0;
-  std::uint64_t dropped_not_finite = 0;  // those with a position that is not
-  std::uint64_t dropped_duplicate = 0;   // boundary triangles only: workers see to the parts
+  std::uint64_t dropped_not_finite = 0;  // those with a position that is not finite
+  std::uint64_t dropped_duplicate = 0;   // boundary triangles only: workers do this for the parts
   StagedChannels channels;               // of the input's vertices
   std::optional<LabelMeaning> labels;    // of the triangles of parts and boundary
-  std::uint64_t label_corners = 0;       // vertices that these hold where they are
+  std::uint64_t label_corners = 0;       // vertices that the labels hold in place
   bool uvs = false;                      // whether these triangles have texture coordinates
-  std::uint64_t uv_floor = 0;            // about as few triangles as a result has with these
-  double uv_side = 0;                    // how long the side of a picture is on the surface
+  std::uint64_t uv_floor = 0;            // about the fewest triangles that a result has with these
+  double uv_side = 0;                    // the length of a picture's side on the surface
   std::vector<StagedPicture> pictures;   // of the labels' materials
   std::vector<std::string> skipped;      // properties and elements that were not kept
   double cut_seconds = 0;
   std::uint64_t boundary_triangles = 0;
   BoundaryFiles boundary;  // a cut makes one file; jobs may make more, which are not staged
-  /// Set if the parts are slabs that a run has to sort into streams first. What is known only of a
-  /// sorted stream is then missing: coincident vertices, dropped triangles and samples. Counts of
+  /// Set if the parts are slabs that a run has to sort into streams first. What is known only after
+  /// sorting is then missing: coincident vertices, dropped triangles and samples. The counts of
   /// triangles and vertices are those of the input.
   std::optional<Sorting> sorting;
-  /// Set if a run has to cut first. What is known only then is missing: box, boundary and parts.
+  /// Set if a run has to cut first. What is known only after the cut is missing: box, boundary and
+  /// parts.
   std::optional<Cutting> cutting;
-  /// What parts are built of, whoever wants one, where a run has cut. Never staged.
+  /// Where a run has cut: what any process that needs a part builds it from. Never staged.
   std::optional<BundlesOfMesh> bundles;
   std::vector<PartEntry> parts;    // or streams, or slabs
   std::vector<PartEntry> samples;  // of long streams, by stream: a piece as a part; else no name
 
-  /// Which columns triangles have.
+  /// The columns that the triangles have.
   ColumnSet columns() const { return {labels.has_value(), uvs}; }
-  /// Triangles that the parts and the boundary hold; before the cut, those of the input.
+  /// The number of triangles in the parts and the boundary; before the cut, in the input.
   std::uint64_t triangles() const;
-  /// Before the cut as many as are asked for.
+  /// Before the cut, the number asked for.
   std::size_t part_count() const { return cutting ? cutting->parts : parts.size(); }
 };
 
-/// Sets the floor and the side by those of the parts, in order: about as much lies between parts as
-/// their boundary vertices are of all.
+/// Sets the floor and the side from those of the parts, in order. The triangles between parts are
+/// taken to be in proportion to the parts' boundary vertices.
 void set_uv_facts(Manifest& manifest, std::span<const UvFacts> of_parts);
 
 std::string encode_manifest(const Manifest& manifest);

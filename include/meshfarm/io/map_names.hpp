@@ -10,7 +10,7 @@
 
 namespace meshfarm {
 
-/// The kinds of pictures that materials have and that are not kept, as the user is told them.
+/// The kinds of pictures that materials have but that are not kept, as named to the user.
 std::vector<std::string> maps_left_out(const LabelMeaning& labels,
                                        const std::function<bool(MapUse)>& is_kept);
 

@@ -17,36 +17,36 @@
 
 namespace meshfarm {
 
-/// More than any mesh's textures.
+/// More than any mesh has.
 inline constexpr std::uint32_t k_most_pictures = 65'536;
 
 /// Which of a mesh's pictures are for the colours of its materials.
 std::vector<bool> colour_pictures(const LabelMeaning& labels, std::size_t pictures);
 
-/// What the materials of a mesh look like at texture coordinates: their pictures, decoded, each
-/// with smaller copies of itself. Safe to ask from several threads.
+/// The colours of a mesh's materials at texture coordinates: their decoded pictures, each with
+/// smaller copies. Thread-safe.
 class MaterialColours {
  public:
   struct Options {
     std::string name;                // of the mesh, for messages
-    std::uint64_t memory_bytes = 0;  // most that the pictures may take; 0: half of what is free
+    std::uint64_t memory_bytes = 0;  // limit for the pictures; 0: half of the free memory
   };
-  /// A picture that is damaged is named in a warning, and what it covers has its material's colour
-  /// alone. Throws DataError if the pictures take more memory than they may.
+  /// A damaged picture is named in a warning, and the surface it covers has only its material's
+  /// colour. Throws DataError if the pictures take more memory than allowed.
   MaterialColours(const LabelMeaning& labels, const PictureFiles& pictures, const Options& options);
-  /// The same of pictures that a stage has as tiles, which are read when they are looked at. What
-  /// is in no file is as a damaged one. The tiles in memory take `memory_bytes`. Throws DataError,
-  /// UnreadIoError, also when it is asked.
+  /// The same for pictures that a stage holds as tiles, which are read when they are needed. A
+  /// picture that is in no file is treated as damaged. The tiles in memory take up to
+  /// `memory_bytes`. Throws DataError or UnreadIoError, also from the lookups.
   MaterialColours(const LabelMeaning& labels, const Stage& stage,
                   std::span<const TiledPicturesRef> files, std::uint64_t memory_bytes);
   ~MaterialColours();
   MaterialColours(MaterialColours&&) noexcept;
 
-  /// Linear red, green and blue, from 0 to 1, at a place of a label's material. `texels`: of the
-  /// picture's a side of what is to have the colour; beyond 1 a smaller copy of the picture is
-  /// looked at.
+  /// Linear red, green and blue, from 0 to 1, at a place of a label's material. `texels`: the side,
+  /// in texels of the picture, of what is to get the colour; above 1 a smaller copy of the picture
+  /// is used.
   std::array<float, 3> at(Label label, Uv uv, double texels) const;
-  /// The texels that a triangle with these corners covers.
+  /// The number of texels that a triangle with these corners covers.
   double texels_of(Label label, const CornerUvs& uvs) const;
 
  private:
@@ -54,7 +54,7 @@ class MaterialColours {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The level from 0 to 1 of sRGB that pictures have for a linear one.
+/// The sRGB level, as in pictures, of a linear level; both from 0 to 1.
 double srgb_level(double linear);
 
 /// A square picture of red, green and blue levels, row by row from the top, as a file.

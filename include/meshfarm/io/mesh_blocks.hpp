@@ -13,18 +13,18 @@
 
 namespace meshfarm {
 
-/// Some records in a row.
+/// Consecutive records.
 struct BlockRange {
   std::uint64_t first = 0;
   std::uint64_t count = 0;
 };
 
-/// The records of a block, where so many records are divided into `blocks` of one size; the last
-/// may have fewer.
+/// The records of a block, where `records` records are divided into `blocks` blocks of equal size;
+/// the last may have fewer.
 BlockRange block_of(std::uint64_t records, std::uint64_t blocks, std::uint64_t block);
 
-/// A mesh file whose records all have one size, so that any of them can be read by themselves. What
-/// is read is what a scan of the MeshSource shows of them. Safe from several threads.
+/// A mesh file whose records all have one size, so that any of them can be read directly. Gives the
+/// same data as a scan of the MeshSource. Thread-safe.
 class MeshBlocks {
  public:
   virtual ~MeshBlocks() = default;
@@ -39,7 +39,7 @@ class MeshBlocks {
       const std::function<void(std::span<const WideTriangle>)>& take) const = 0;
 };
 
-/// Of a plain binary PLY file of triangles that is as long as its header promises; none of any
+/// For a plain binary PLY file of triangles that is as long as its header promises; null for any
 /// other file. Throws IoError, and DataError for a malformed header.
 std::unique_ptr<MeshBlocks> open_blocks(const std::filesystem::path& path);
 

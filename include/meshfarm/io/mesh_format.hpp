@@ -12,27 +12,27 @@
 
 namespace meshfarm {
 
-/// Whether a file of this name can be written as what its extension says: .ply, .glb, .gltf,
+/// Whether a file of this name can be written in the format of its extension: .ply, .glb, .gltf,
 /// .off, .obj or .stl. A name without an extension is PLY.
 bool is_output_format(const std::filesystem::path& path);
 
 /// Throws DataError if not.
 void check_output_format(const std::filesystem::path& path);
 
-/// Those of the channels that a file of this name has a place for. Throws as above.
+/// The channels that a file of this name has a place for. Throws as above.
 std::vector<Channel> kept_channels(const std::filesystem::path& path,
                                    std::span<const Channel> channels);
 
 /// Whether a file of this name has a place for triangles' labels. Throws as above.
 bool keeps_labels(const std::filesystem::path& path);
-/// Whether also for the names and the colours of their materials.
+/// Whether it also has a place for the names and colours of their materials.
 bool keeps_materials(const std::filesystem::path& path);
 /// Whether a file of this name has a place for triangles' texture coordinates, and for pictures.
 bool keeps_uvs(const std::filesystem::path& path);
-/// And for pictures of this use.
+/// Whether it has a place for pictures of this use.
 bool keeps_map(const std::filesystem::path& path, MapUse use);
 
-/// Whether a file of this name keeps positions of 64 bits as they are.
+/// Whether a file of this name keeps 64-bit positions exactly.
 bool keeps_doubles(const std::filesystem::path& path);
 
 /// Whether Packing changes a file of this name.
@@ -47,11 +47,11 @@ struct MeshOutput {
   std::string string() const { return path.string(); }
 };
 
-/// Throws UsageError for a GLB that is too large, as create_mesh() will, and DataError as above.
+/// Throws UsageError for a GLB that is too large, as create_mesh() does, and DataError as above.
 void check_fits(const std::filesystem::path& path, const MeshSinkOptions& options);
 
 /// Begins a mesh file in the format of its extension. Throws DataError as above, IoError for a path
-/// that cannot be written, and UsageError for more than the format can count.
+/// that cannot be written, and UsageError for more vertices or triangles than the format can count.
 std::unique_ptr<MeshSink> create_mesh(const std::filesystem::path& path,
                                       const MeshSinkOptions& options);
 

@@ -13,9 +13,9 @@
 
 namespace meshfarm {
 
-/// How a GLB is written. Compressed: positions as whole numbers of 16 bits where these are fine
-/// enough, normals of 8 bits, and all of it through meshoptimizer's codecs. It is made in memory;
-/// what is too large for that is plain.
+/// How a GLB is written. Compressed: positions as 16-bit whole numbers where these are fine enough,
+/// 8-bit normals, and everything through meshoptimizer's codecs. It is made in memory; a mesh too
+/// large for that is written plain.
 enum class Packing : std::uint8_t { plain, compressed };
 
 struct MeshSinkOptions {
@@ -25,7 +25,7 @@ struct MeshSinkOptions {
   std::string comment;  // one line, may be empty; not every format has a place for it
   std::vector<Channel> channels = {};       // of the vertices; see kept_channels()
   std::optional<LabelMeaning> labels = {};  // of the triangles
-  Packing packing = Packing::plain;         // of no other format than GLB
+  Packing packing = Packing::plain;         // for GLB only
   bool uvs = false;                         // whether triangles have texture coordinates
   PictureFiles pictures = {};               // of the labels' materials
 };
@@ -37,11 +37,11 @@ class MeshSink {
  public:
   virtual ~MeshSink() = default;
   /// These throw IoError if something cannot be written, and DataError for more vertices or
-  /// triangles than promised, and for an index that no vertex has.
+  /// triangles than promised, and for an index out of range.
   virtual void vertices(std::span<const Vec3> batch) = 0;
-  /// With the values of all channels of each vertex, one vertex after the other.
+  /// With the values of all channels: those of the first vertex, then those of the next.
   virtual void vertices(std::span<const Vec3> batch, std::span<const float> values) = 0;
-  /// With the columns that the options say, and no others.
+  /// With exactly the columns that the options name.
   virtual void triangles(const TriangleView& batch) = 0;
   virtual void triangles(std::span<const Triangle> batch,
                          const TriangleColumnsView& columns = {}) = 0;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Packed triangles. In most meshes the corners of a triangle have indices near those of the
-// triangle before, so most differences fit into 16 bits: half of what three indices take.
+// previous triangle, so most differences fit into 16 bits: half the size of three indices.
 //   triangle = three i16: first corner - first corner of the triangle before (0 before the first),
 //              second - first, third - first
 //            | escape u16 0x8000 | three u32, the corners
@@ -23,12 +23,12 @@
 namespace meshfarm {
 
 inline constexpr std::uint16_t k_triangle_escape = 0x8000;
-/// Most bytes that a triangle can take.
+/// The most bytes that a triangle can take.
 inline constexpr std::size_t k_most_packed = 14;
 
 class TrianglePacker {
  public:
-  /// The bytes of the next triangle; they stand until the next call.
+  /// The bytes of the next triangle; valid until the next call.
   std::string_view pack(const Triangle& t) {
     // May wrap round; the sums in unpack_triangles() wrap round in the same way.
     const std::array<std::uint32_t, 3> differences = {t[0] - last_, t[1] - t[0], t[2] - t[0]};
@@ -53,7 +53,7 @@ class TrianglePacker {
 };
 
 std::string pack_triangles(std::span<const Triangle> triangles);
-/// All triangles of the bytes, none if these end inside of one. The corners may be anything.
+/// All triangles of the bytes; nothing if these end within a triangle. The corners are not checked.
 std::optional<std::vector<Triangle>> unpack_triangles(std::string_view packed);
 
 }  // namespace meshfarm

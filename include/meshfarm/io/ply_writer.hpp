@@ -11,7 +11,7 @@
 namespace meshfarm {
 
 /// Writes a binary little endian PLY. Indices are `int` up to 2^31 vertices, `uint` up to 2^32;
-/// more is a UsageError (PLY has no wider index that readers take).
+/// more is a UsageError (PLY has no wider index that readers accept).
 std::unique_ptr<MeshSink> create_ply(const std::filesystem::path& path,
                                      const MeshSinkOptions& options);
 

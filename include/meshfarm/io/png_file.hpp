@@ -14,7 +14,7 @@ namespace meshfarm {
 struct Texels {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::size_t step = 3;  // bytes a texel: red, green and blue, and alpha if there are 4
+  std::size_t step = 3;  // bytes per texel: red, green and blue, and alpha if there are 4
   std::vector<std::uint8_t> bytes;
 
   std::uint8_t* at(std::uint32_t x, std::uint32_t y) {
@@ -22,13 +22,14 @@ struct Texels {
   }
 };
 
-/// How a PNG is compressed: as far as it goes, or in a third of the time and a half more bytes.
+/// How a PNG is compressed: as small as possible, or in a third of the time with half as many bytes
+/// again.
 enum class PngSize : std::uint8_t { least, soon };
 
 /// A PNG file. Throws DataError for a picture that the format cannot hold.
 std::string encode_png(Texels texels, PngSize size = PngSize::least);
-/// Writes a PNG that others see only whole. Throws IoError, or DataError for a picture that the
-/// format cannot hold.
+/// Writes a PNG that appears under its name only when whole. Throws IoError, or DataError for a
+/// picture that the format cannot hold.
 void write_png(const std::filesystem::path& path, Texels texels);
 
 }  // namespace meshfarm

@@ -18,19 +18,19 @@
 
 namespace meshfarm {
 
-/// One rung of a part's ladder: the part when every collapse up to a cost level was made.
+/// One rung of a part's ladder: the part after all collapses up to a cost level.
 struct Rung {
   std::int32_t level = 0;  // rising along the ladder
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;       // falling along the ladder
-  std::uint64_t free_triangles = 0;  // those without a locked vertex
-  double error = 0;                  // greatest distance from the samples, where it was measured
-  FileSection section = {};          // of its result
+  std::uint64_t free_triangles = 0;  // triangles without a locked vertex
+  double error = 0;                  // greatest distance from the samples, if it was measured
+  FileSection section = {};          // of the result's file
   std::uint64_t refused = 0;         // Simplifier::refused_by_topology(), up to here
 };
 
-/// What is known of a part that was built and simplified by one job: what PartEntry tells, and what
-/// was found on the way.
+/// The facts of a part that was built and simplified by one job: those of PartEntry, and what was
+/// found on the way.
 struct BuiltFacts {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
@@ -42,33 +42,33 @@ struct BuiltFacts {
   std::uint64_t coincident_corners = 0;
 };
 
-/// A ladder has no more rungs.
+/// The maximum number of rungs of a ladder.
 inline constexpr std::uint32_t k_most_rungs = 256;
 
-/// Why a ladder has no more rungs.
+/// Why a ladder ends.
 enum class LadderEnd : std::uint8_t {
-  floor,    // it has come to the least that is left of any part, or nothing more collapses
-  enough,   // the next rung was not going to be wanted
-  refusals  // so much is refused to keep the topology that it cannot be kept as far as is wanted
+  floor,    // the least that is left of any part is reached, or nothing more collapses
+  enough,   // the next rung would not have been wanted
+  refusals  // too much is refused for the topology to be kept as far down as wanted
 };
 
-/// What is known of a result without reading its file. Travels with the result message.
+/// What is known of a result without reading its file. Sent with the result message.
 struct ResultSummary {
   std::vector<Rung> rungs;
   std::uint64_t dropped_degenerate = 0;
   std::uint64_t dropped_duplicate = 0;
-  bool held_by_topology = false;  // keeping it refused more than was collapsed
-  std::uint64_t turned = 0;       // triangles that faced another way than most of a piece's area
+  bool held_by_topology = false;  // more collapses were refused for the topology than made
+  std::uint64_t turned = 0;  // triangles that faced another way than most of their piece's area
   std::optional<BuiltFacts> built = {};
   LadderEnd end = LadderEnd::floor;
-  FileSection tail = {};    // of the file: what all rungs have in common
-  FileSection beside = {};  // of the file: what is no part of the mesh
+  FileSection tail = {};    // in the file: what all rungs have in common
+  FileSection beside = {};  // in the file: what is no part of the mesh
 
-  /// Whether more would have collapsed.
+  /// Whether more could have collapsed.
   bool goes_on() const { return end != LadderEnd::floor; }
 };
 
-/// What a reader of one rung needs, and what is beside it.
+/// Where a reader of one rung finds it, the tail, and the bytes beside the mesh.
 struct RungPlace {
   FileSection rung;
   FileSection tail;
@@ -88,17 +88,17 @@ class ResultWriter {
  public:
   using Write = std::function<void(std::string_view)>;
 
-  /// What the mesh has.
+  /// The format of the vertices.
   struct Vertices {
     PositionType positions = PositionType::float32;
     bool appearances = false;
     std::uint32_t boundary = 0;
     ColumnSet columns = {};
   };
-  /// `beside`: bytes that the file holds for others than those who read the mesh.
+  /// `beside`: bytes that the file holds for other readers than those of the mesh.
   ResultWriter(const Vertices& vertices, Write write, std::string_view beside = {});
-  /// More of a rung: its next vertices, counted on from the boundary vertices, and triangles of any
-  /// of the rung's vertices, those to come included; with the columns that the mesh has.
+  /// Adds to a rung: its next vertices, numbered on from the boundary vertices, and triangles of
+  /// any of the rung's vertices, including later ones; with the columns of the mesh.
   void add(VertexView vertices, std::span<const Triangle> triangles,
            const TriangleColumnsView& columns = {});
   void end_rung(std::int32_t level, std::uint64_t free_triangles, double error = 0,
@@ -106,13 +106,13 @@ class ResultWriter {
   /// A whole rung: the mesh's first vertices are the boundary vertices.
   void add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
                 double error = 0, std::uint64_t refused = 0);
-  /// Samples: points of the part as it came, by which the error of the final mesh is measured.
+  /// Samples: points of the original part, for measuring the error of the final mesh.
   void finish(const VertexView& boundary, std::span<const SurfaceSamples> samples);
 
-  /// Where the bytes beside the mesh are; once it is finished, where the tail is.
+  /// Where the bytes beside the mesh are and, once it is finished, the tail.
   const FileSection& beside() const { return beside_; }
   const FileSection& tail() const { return tail_; }
-  /// Of the finished file, made by a Simplifier or what counts like one.
+  /// For the finished file; `made` is a Simplifier or has the same counts.
   template <class Made>
   ResultSummary summary_of(const Made& made) const {
     ResultSummary summary{rungs_, made.dropped_degenerate(), made.dropped_duplicate()};
@@ -132,13 +132,13 @@ class ResultWriter {
   Write write_;
   FileSection beside_;
   FileSection tail_;
-  FileSection section_;  // that is being written
-  Rung rung_;            // the counts of what was added of the next rung
+  FileSection section_;  // being written
+  Rung rung_;            // the counts of what was added to the next rung
   std::vector<Rung> rungs_;
   Checksum sum_;
 };
 
-/// Those of a result of this part.
+/// The format of a result of this part.
 inline ResultWriter::Vertices vertices_of(const Part& part) {
   return {part.positions, !part.mesh.appearances.empty(), part.boundary_vertices,
           part.mesh.columns.set()};
@@ -152,11 +152,11 @@ struct ResultMesh {
   std::vector<SurfaceSamples> samples;
 };
 
-/// The rung with this index, of its section and the tail, whose checksums were compared. Throws
-/// DataError naming `what`, as all here do.
+/// Decodes the rung with this index from its section and the tail; the caller has verified their
+/// checksums. Throws DataError naming `what`, as all here do.
 ResultMesh decode_rung(std::string_view rung_bytes, std::string_view tail, std::size_t rung,
                        std::string_view what);
-/// The same of a whole file, all of whose checksums are compared.
+/// The same from a whole file; verifies all of its checksums.
 ResultMesh decode_result(std::string_view file, std::size_t rung, std::string_view what);
 
 }  // namespace meshfarm

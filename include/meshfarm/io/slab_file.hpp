@@ -11,11 +11,11 @@
 
 namespace meshfarm {
 
-/// A vertex that does not become one with all that lie at its point, as surfaces touch there or a
-/// neck has no width (geometry/weld.hpp, separate_touching).
+/// A vertex that is not merged with all others at its point, because surfaces touch there or a neck
+/// has no width (geometry/weld.hpp, separate_touching).
 struct ApartVertex {
   std::uint32_t place = 0;
-  std::uint32_t sheet = 0;  // those of one sheet become one
+  std::uint32_t sheet = 0;  // the vertices of one sheet are merged
   friend bool operator==(const ApartVertex&, const ApartVertex&) = default;
 };
 
@@ -25,17 +25,17 @@ struct MeshShare {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> boundary;
-  PositionType type = PositionType::float32;  // what all positions fit
-  /// At the points of boundary vertices, ascending: all vertices of a point or none. The sheets of
-  /// a point are numbered in an order that tells nothing of the input's.
+  PositionType type = PositionType::float32;  // holds all positions exactly
+  /// At the points of boundary vertices, ascending: either all vertices of a point or none. The
+  /// numbering of a point's sheets does not depend on the order of the input.
   std::vector<ApartVertex> apart;
-  std::vector<Appearance> appearances = {};  // one a vertex, or none
+  std::vector<Appearance> appearances = {};  // one per vertex, or none
   TriangleColumns columns = {};              // of the triangles
 };
 
-/// A share of a mesh as a staged file. Vertices and triangles keep the order they came in, which
-/// decides between coincident vertices that are not welded. Positions must be exact in
-/// `slab.type`; boundary vertices must be in ascending order, each once.
+/// A share of a mesh as a staged file. Vertices and triangles keep their order, which decides
+/// between coincident vertices that are not welded. Positions must be exact in `slab.type`;
+/// boundary vertices must be ascending and unique.
 std::string encode_slab(const MeshShare& slab);
 /// Throws DataError naming `what` for anything that encode_slab did not make.
 MeshShare decode_slab(std::string_view file, std::string_view what);

@@ -7,7 +7,7 @@
 
 namespace meshfarm {
 
-/// As it stands in the manifest and in a job's parameters: axes 3 x u8 | falling u8 |
+/// As encoded in the manifest and in a job's parameters: axes 3 x u8 | falling u8 |
 /// weld u8 (0 exact, 1 off).
 void put(ByteWriter& out, const Sorting& sorting);
 Sorting get_sorting(ByteReader& in);

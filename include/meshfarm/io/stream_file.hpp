@@ -15,52 +15,51 @@
 
 namespace meshfarm {
 
-/// What the head of a stream says: a mesh file that is read once, front to back, in bounded memory
-/// (Xiong et al. 2008, 4; streaming meshes: Isenburg & Lindstrom 2005).
+/// The head of a stream: a mesh file that is read once, front to back, in bounded memory (Xiong et
+/// al. 2008, 4; streaming meshes: Isenburg & Lindstrom 2005).
 struct StreamInfo {
   PositionType positions = PositionType::float32;
-  bool appearances = false;  // whether vertices have any
+  bool appearances = false;  // whether vertices have them
   ColumnSet columns = {};    // of the triangles
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
   std::uint32_t boundary_vertices = 0;  // shared with other streams
 };
 
-/// A mesh in sweep order, to be made a stream.
+/// A mesh in sweep order, to be written as a stream.
 struct StreamMesh {
   Mesh mesh;                           // every vertex is used by a triangle or is a boundary vertex
-  std::vector<std::uint8_t> boundary;  // a flag a vertex
+  std::vector<std::uint8_t> boundary;  // one flag per vertex
   PositionType positions = PositionType::float32;
 };
 
-/// The whole staged file: vertices come just before the first triangle that needs them or one
-/// after them, and each is marked at its last use. Positions must be exact in `stream.positions`.
-/// Throws UsageError from 2^31 vertices on.
+/// The whole staged file: each vertex comes just before the first triangle that needs it or a later
+/// vertex, and is marked at its last use. Positions must be exact in `stream.positions`. Throws
+/// UsageError for 2^31 or more vertices.
 std::string encode_stream(const StreamMesh& stream);
 
-/// A vertex as a corner of a triangle, counted from the stream's first, and whether this is its
-/// last use.
+/// A vertex as a corner of a triangle: its number in the stream, and whether this is its last use.
 struct StreamCorner {
   std::uint32_t code = 0;
   std::uint32_t vertex() const { return code >> 1; }
   bool last_use() const { return (code & 1) != 0; }
 };
 
-/// A piece of a stream: new vertices, then triangles of these and of earlier ones.
+/// A piece of a stream: new vertices, then triangles of these and earlier ones.
 struct StreamBlock {
   std::vector<Vec3> positions;  // of the next vertices
   std::vector<Appearance> appearances;
-  /// Which of these, ascending and by their place here, are boundary vertices; "last use" is said
-  /// of those that no triangle uses.
+  /// The boundary vertices among these, ascending, by their index here; "last use" is set for those
+  /// that no triangle uses.
   std::vector<StreamCorner> boundary;
   std::vector<std::array<StreamCorner, 3>> triangles;
   TriangleColumns columns;  // of the triangles
 };
 
-/// Reads a stream block by block. Holds a block and a few bytes for each vertex from the oldest
-/// that is still to be used. Throws DataError naming `what`, the block and the place for anything
-/// that encode_stream did not make: a damaged or cut off file, a triangle of a vertex that is not
-/// there yet or was finalised before, a vertex that never is.
+/// Reads a stream block by block. Holds one block, and a few bytes for each vertex from the oldest
+/// one still in use. Throws DataError naming `what`, the block and the place for anything that
+/// encode_stream did not make: a damaged or truncated file, a triangle of a vertex that is not
+/// there yet or was already finalised, a vertex that is never finalised.
 class StreamReader {
  public:
   StreamReader(Fill fill, std::string what);
@@ -81,12 +80,12 @@ class StreamReader {
   std::string what_;
   StreamInfo info_;
   std::string bytes_;
-  std::uint64_t sum_ = 0;         // of what was read, each block's made from the one before
+  std::uint64_t sum_ = 0;         // of what was read, each block's computed from the previous one
   std::uint64_t block_ = 0;       // blocks read
   std::uint64_t vertices_ = 0;    // read so far
   std::uint64_t triangles_ = 0;   // read so far
   std::uint64_t boundary_ = 0;    // read so far
-  std::uint64_t unfinished_ = 0;  // vertices that are still to be used
+  std::uint64_t unfinished_ = 0;  // vertices still in use
   std::uint64_t first_state_ = 0;
   std::vector<std::uint8_t> states_;  // of vertices from first_state_ on: finished or not
 };
@@ -94,11 +93,12 @@ class StreamReader {
 /// Whether a file begins like a stream.
 bool is_stream(std::string_view start);
 
-/// Reads the whole stream into memory: what encode_stream was given.
+/// Reads the whole stream into memory: the mesh given to encode_stream.
 StreamMesh read_stream_mesh(StreamReader& reader);
 /// Reads the whole stream into memory as a part, its boundary vertices first.
 Part read_stream(StreamReader& reader);
-/// A whole staged file that is a part, or a stream as one. Throws DataError as their readers do.
+/// Decodes a whole staged file that is a part, or a stream as a part. Throws DataError as their
+/// readers do.
 Part decode_part_or_stream(std::string_view file, const std::string& what);
 
 }  // namespace meshfarm
