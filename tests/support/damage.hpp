@@ -11,7 +11,7 @@
 
 namespace meshfarm::test {
 
-/// Every prefix and every single flipped bit must be refused by `decode`.
+/// Checks that `decode` refuses every prefix and every single flipped bit.
 template <class Decode>
 void check_refuses_damage(const std::string& file, Decode decode) {
   for (std::size_t i = 0; i < file.size(); ++i) {

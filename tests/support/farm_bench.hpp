@@ -15,8 +15,8 @@
 
 namespace meshfarm::test {
 
-/// A folder with a made-up mesh, processes that work on it, and the result of an undisturbed run,
-/// whose bytes every other run has to make, too.
+/// A folder with a generated mesh, processes that work on it, and the result of an undisturbed run,
+/// whose bytes every other run must reproduce.
 class FarmBench {
  public:
   explicit FarmBench(const std::string& triangles) {
@@ -31,13 +31,13 @@ class FarmBench {
   void check_result(const std::string& output) const { CHECK(read_text(output) == expected_); }
 
  protected:
-  /// Takes the result of a run, which must have succeeded, as the one that is expected.
+  /// Makes the result of a run, which must have succeeded, the expected one.
   void expect(const Ran& ran, const std::string& output) {
     REQUIRE(ran.code == 0);
     expected_ = read_text(output);
     REQUIRE(expected_.size() > 1000);
   }
-  /// A new stage, cut as the words say.
+  /// A new stage, cut with these options.
   std::string cut(const std::vector<std::string>& how) {
     const std::string stage = path("stage" + std::to_string(++stages_));
     std::vector<std::string> words = {"cut", mesh(), "--stage", stage};
@@ -55,7 +55,7 @@ class FarmBench {
   int stages_ = 0;
 };
 
-/// Published files in a stage's results.
+/// The number of published files in a stage's results.
 inline std::size_t results_in(const std::string& stage) {
   std::error_code ignored;
   std::size_t count = 0;

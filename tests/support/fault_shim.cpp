@@ -1,28 +1,29 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Loaded into a meshfarm process by LD_PRELOAD: the n-th call that writes, reads, makes, names or
-// removes a file below a folder fails, is cut short, or is the process's last deed. Sockets and
-// eventfds are left alone, which is why this is no job for strace. Told by the environment:
+// Loaded into a meshfarm process by LD_PRELOAD: the n-th call that writes, reads, creates, names or
+// removes a file below a folder fails, is cut short, or ends the process. Sockets and eventfds are
+// not affected, which is why strace cannot be used for this. Configured by the environment:
 //
 //   MESHFARM_FAULT        CALL:KIND:N    write|fsync|close|rename|link|open|read|pread|unlink|
 //                                        fdatasync : an errno | short | kill | lost | hang
 //   MESHFARM_FAULT_ROLE   only in processes of this command: worker, sink, ventilator
 //   MESHFARM_FAULT_BELOW  the folder
-//   MESHFARM_FAULT_WHILE  a file: as long as it is there, each write and fsync below
-//   the folder fails with ENOSPC, and nothing else is done
-//   MESHFARM_FAULT_SICK   a file: as long as it is there, the mount is sick: nothing below the
-//   folder is found or opened (ESTALE) or read (EIO)
+//   MESHFARM_FAULT_WHILE  a file: while it exists, each write and fsync below the folder fails with
+//                         ENOSPC, and no other fault happens
+//   MESHFARM_FAULT_SICK   a file: while it exists, the mount is sick: nothing below the folder is
+//                         found or opened (ESTALE) or read (EIO)
 //   MESHFARM_FAULT_HOST   the host's name
-//   MESHFARM_FAULT_DELAY_MS  each write, fsync, fdatasync, rename and link below the folder takes a
-//   while, up to so many milliseconds, told by the process's number and by the call's
-//   MESHFARM_FAULT_CLOCK_S  the host's clock is so many seconds ahead of the file server's
-//   MESHFARM_FAULT_FIRED  made when the fault happens, which it then does once; empty: in each
-//   process
+//   MESHFARM_FAULT_DELAY_MS  the longest delay, in milliseconds, of each write, fsync, fdatasync,
+//                         rename and link below the folder; it depends on the process's and the
+//                         call's number
+//   MESHFARM_FAULT_CLOCK_S  how many seconds the host's clock is ahead of the file server's
+//   MESHFARM_FAULT_FIRED  a file that is created when the fault happens, which then happens only
+//                         once; empty: once in each process
 //
 // "lost" (of rename, link, unlink): it is done, but answered with ENOENT or EEXIST, as by an NFS
-// server that restarted. Staged files are opened by a system call of their own, which is no open,
-// but the sick mount knows it.
+// server that restarted. Staged files are opened by a system call of their own, which does not
+// count as "open", but the sick mount affects it.
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -114,12 +115,12 @@ struct Fault {
   template <class Where>
   void delay(const Where& where) {
     if (longest_delay_ms == 0 || !covers(where)) return;
-    // One call in four waits: the most come at once, as the order of things is to change.
+    // One call in four waits; most go on at once, so that the order of events changes.
     const unsigned long drawn =
         (static_cast<unsigned long>(::getpid()) * 1000003 + ++delays) * 0x9e3779b97f4a7c15 >> 33;
     if (drawn % 4 == 0) ::poll(nullptr, 0, static_cast<int>(drawn / 4 % longest_delay_ms));
   }
-  /// Whether this call is the one. A process that shall die dies here.
+  /// Whether the fault strikes this call. If the fault is "kill" or "hang", does not return.
   template <class Where>
   bool strikes(const char* name, const Where& where) {
     if (call != name || !covers(where) || ++count != nth) return false;
@@ -216,7 +217,7 @@ int open(const char* path, int flags, ...) {
   return real<int(const char*, int, ...)>("open")(path, flags, mode);
 }
 
-/// The system call by which staged files are opened; others go through as they are.
+/// The system call that opens staged files; others are passed through.
 long syscall(long number, ...) {
   va_list rest;
   va_start(rest, number);

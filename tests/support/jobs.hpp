@@ -21,7 +21,7 @@ inline std::vector<Job> make_jobs(std::size_t count, const std::string& prefix =
   return jobs;
 }
 
-/// Stages of jobs that each need all of the stage before.
+/// Stages of jobs; each job needs all jobs of the previous stage.
 inline JobSource in_stages(const std::vector<std::vector<Job>>& stages) {
   return [stages] {
     std::vector<std::string> names;

@@ -14,7 +14,7 @@
 
 namespace meshfarm::test {
 
-/// Parts, or streams read whole, and the triangles between them, as one mesh.
+/// Joins parts, or streams that were read completely, and the triangles between them to one mesh.
 inline Mesh joined(std::span<const Part> parts, std::span<const BoundaryTriangle> boundary) {
   Mesh whole;
   std::vector<std::uint32_t> offsets;
@@ -32,12 +32,12 @@ inline Mesh joined(std::span<const Part> parts, std::span<const BoundaryTriangle
   return whole;
 }
 
-/// Vertices at the point of an earlier one.
+/// The number of vertices at the point of an earlier one.
 inline std::uint64_t count_coincident(const Mesh& mesh) {
   return weld(mesh.positions).merged;
 }
 
-/// Triangles with two corners at one point.
+/// The number of triangles with two corners at one point.
 inline std::uint64_t count_flat(const Mesh& mesh) {
   const std::vector<Vec3>& at = mesh.positions;
   return static_cast<std::uint64_t>(
@@ -46,7 +46,7 @@ inline std::uint64_t count_flat(const Mesh& mesh) {
       }));
 }
 
-/// Vertices and triangles in another order, triangles turned, too.
+/// The mesh with its vertices and triangles in another order, and the corners of triangles rotated.
 inline Mesh shuffled(const Mesh& mesh, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<std::uint32_t> order(mesh.positions.size());

@@ -17,7 +17,7 @@ Mesh tetrahedron();
 /// A closed octahedron of radius 1.
 Mesh octahedron();
 
-/// A box of these sizes, closed, of twelve triangles; diagonals of opposite faces run alike.
+/// A closed box of these sizes, with twelve triangles; opposite faces have the same diagonals.
 Mesh box(Vec3 size);
 
 /// An icosahedron, each triangle split into four `levels` times, on the sphere of radius 1:
@@ -28,33 +28,33 @@ Mesh icosphere(int levels);
 /// (both at least 3), 2 * rows * columns triangles.
 Mesh torus(std::uint32_t rows, std::uint32_t columns);
 
-/// The torus with its first ring drawn together to a neck of no width: of twice as many triangles
-/// as there are columns two corners are at one place.
+/// The torus with its first ring contracted to a neck of no width: twice as many triangles as there
+/// are columns have two corners at one place.
 Mesh torus_with_neck(std::uint32_t rows, std::uint32_t columns);
 
 void append(Mesh& mesh, const Mesh& other);
 
-/// A torus of which each third ring is drawn together to a point: its necks have no width.
+/// A torus with every third ring contracted to a point: its necks have no width.
 Mesh torus_with_necks(std::uint32_t rows, std::uint32_t columns);
 
-/// A row of octahedra, each of which touches the next by a tip, or by an edge.
+/// A row of octahedra; each touches the next at a tip, or along an edge.
 Mesh touching_row(std::uint32_t count, bool at_edges);
 
-/// The mesh and a triangle of its first two vertices and one that is `far` times its size away.
+/// The mesh, and a triangle of its first two vertices and one that is `far` times its size away.
 Mesh with_outlier(Mesh mesh, double far);
 
-/// The mesh and `many` triangles, each of an edge of the mesh and a vertex of its own, all of which
-/// lie at one point of it.
+/// The mesh, and `many` triangles, each of an edge of the mesh and a vertex of its own; all of
+/// these vertices lie at one point of the mesh.
 Mesh with_crowd(Mesh mesh, std::uint32_t many);
 
-/// The mesh with vertices that have no position put between its own; of some, `triangles` triangles
-/// make use, of the others none.
+/// The mesh with vertices without a position inserted between its own; `triangles` triangles use
+/// some of them, no triangle uses the others.
 Mesh with_lost_vertices(const Mesh& mesh, std::uint32_t triangles);
 
-/// A mesh beside itself reflected in a point of its surface, where the two then touch.
+/// A mesh and its reflection in a point of its surface, where the two touch.
 Mesh touching_twice(const Mesh& mesh, Vec3 point);
 
-/// One for each of so many vertices, all different.
+/// One for each of `count` vertices, all different.
 std::vector<Appearance> appearances(std::size_t count);
 
 /// A flat open sheet of nx x ny unit squares in z = 0, seen from +z:
@@ -66,7 +66,7 @@ std::vector<Appearance> appearances(std::size_t count);
 ///     0---1---2
 Mesh grid(std::uint32_t nx, std::uint32_t ny);
 
-/// Two triangles with one vertex in common, which is not manifold:
+/// Two triangles that share one vertex, which is not manifold:
 ///
 ///     1       4
 ///     | \   / |
@@ -75,7 +75,7 @@ Mesh grid(std::uint32_t nx, std::uint32_t ny);
 ///     2       3
 Mesh bow_tie();
 
-/// Three triangles on the one edge 0-1, which is not manifold, seen from its end:
+/// Three triangles at one edge 0-1, which is not manifold, seen from its end:
 ///
 ///        2
 ///        |

@@ -12,8 +12,8 @@
 
 namespace meshfarm::test {
 
-/// The jobs that are possible once these are accepted and are not accepted themselves, in the order
-/// of their names.
+/// The jobs that become possible once these are accepted, except those accepted themselves, sorted
+/// by name.
 inline std::vector<Job> next_jobs(const JobSource& source, std::span<const AcceptedJob> accepted) {
   std::map<JobKey, const JobOutput*> outputs;
   for (const AcceptedJob& each : accepted) outputs[each.key] = &each.output;

@@ -30,14 +30,14 @@ inline std::string read_text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Asks until `done` says yes, at most `seconds`. Returns whether it did.
+/// Polls until `done` returns true, for at most `seconds`. Returns whether it did.
 inline bool wait_until(const std::function<bool()>& done, double seconds = 60) {
   using namespace std::chrono;
   const auto begin = steady_clock::now();
   while (!done()) {
     const auto waited = steady_clock::now() - begin;
     if (waited > duration<double>(seconds)) return false;
-    // What has taken long need not be noticed at once, and looking takes time.
+    // After a long wait a delay does not matter, and polling takes time.
     std::this_thread::sleep_for(std::clamp<nanoseconds>(waited / 50, 2ms, 100ms));
   }
   return true;
@@ -104,7 +104,7 @@ class Process {
   std::string err_;
 };
 
-/// Runs a command to its end and returns its exit code; `err` and `out` take what it said.
+/// Runs a command to its end and returns its exit code, and what it wrote to `out` and `err`.
 struct Ran {
   int code = 0;
   std::string out;
@@ -116,8 +116,8 @@ inline Ran run_meshfarm(const std::vector<std::string>& words, const std::filesy
   return {code, process.out(), process.err()};
 }
 
-/// The tcp ports that a process listens on: its socket inodes among those of /proc/net/tcp that are
-/// in the state LISTEN (0A).
+/// The tcp ports that a process listens on: the socket inodes among those of /proc/net/tcp in the
+/// state LISTEN (0A).
 inline std::vector<std::uint16_t> listening_ports(pid_t pid) {
   const std::string process = "/proc/" + std::to_string(pid);
   std::vector<std::string> inodes;

@@ -12,8 +12,8 @@
 
 namespace meshfarm::test {
 
-/// The fuzzers begin from these files: of an older format they would never get past its first
-/// bytes. MESHFARM_WRITE_SEEDS=1 writes them anew.
+/// The fuzzers start from these files: seeds of an older format would never get past its first
+/// bytes. MESHFARM_WRITE_SEEDS=1 rewrites them.
 inline void check_seed(const std::string& fuzzer, const std::string& name,
                        const std::string& bytes) {
   const auto path =

@@ -16,7 +16,7 @@
 
 namespace meshfarm::test {
 
-/// Watches doctest: has the running test case failed a check so far?
+/// Watches doctest: whether the running test case has failed a check so far.
 class FailureWatch : public doctest::IReporter {
  public:
   explicit FailureWatch(const doctest::ContextOptions&) {}
@@ -46,9 +46,9 @@ class FailureWatch : public doctest::IReporter {
 inline const int k_failure_watch_registered =
     doctest::registerReporter<FailureWatch>("failure_watch", 1, false);
 
-/// A new, empty folder under the system's temporary folder ($TMPDIR). Goes with its contents when
-/// the object does, unless the running test case has failed by then or keep() was called: then it
-/// stays, and its path is printed.
+/// A new, empty folder under the system's temporary folder ($TMPDIR). Deleted with the object,
+/// unless the running test case has failed by then or keep() was called: then it stays, and its
+/// path is printed.
 class TempFolder {
  public:
   TempFolder() {
@@ -65,13 +65,13 @@ class TempFolder {
       std::fprintf(stderr, "kept: %s\n", path_.c_str());
       return;
     }
-    std::error_code ignored;  // a destructor cannot fail the test; a left-over folder harms none
+    std::error_code ignored;  // a destructor cannot fail the test; a left-over folder is harmless
     std::filesystem::remove_all(path_, ignored);
   }
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
-  /// Leave the folder behind whatever happens.
+  /// Keeps the folder in any case.
   void keep() { kept_ = true; }
 
  private:
