@@ -67,7 +67,7 @@ install_peers() {
     { tail -n 5 "$build/npm.log" >&2; echo "bench.sh: npm has no meshoptimizer for us" >&2; exit 1; }
 }
 
-# The names of the peers to run; those asked for that were not built are named on stderr.
+# The names of the peers to run. Those requested but not built are reported on stderr.
 choose_peers() {
   local name word
   for name in "${known[@]}"; do
@@ -92,7 +92,8 @@ check_peer_words() {
   done
 }
 
-# One run of one program: NAME.ROUND.tree is what the whole process tree took, .peer what it says.
+# One run of one program. NAME.ROUND.tree has what the whole process tree used, .peer the program's
+# output.
 run_one() {
   local name=$1 round=$2 output=$results/$1.ply
   local command=("$build/tests/bench/peer_$name" "$input" "$output" "$ratio")
@@ -108,7 +109,7 @@ run_one() {
   touch "$results/$name.failed"
 }
 
-# Colours of large meshes take more than what `compare` may use by itself.
+# For the colours of large meshes, `compare` needs more memory than its default.
 compare_one() {
   "$build/meshfarm" compare "$input" "$results/$1.ply" --memory 4G --json \
     > "$results/$1.compare" || touch "$results/$1.failed"
@@ -150,7 +151,7 @@ own=()
 names=(meshfarm "${own[@]}" "${names[@]}" meshfarm_file)
 [[ " ${names[*]} " != *" meshoptimizer "* ]] || names+=(meshoptimizer_file)
 
-cat "$input" > /dev/null # the first to read it shall not pay for the disk
+cat "$input" > /dev/null # so that the first program does not pay for the disk
 load_before=$(cut -d ' ' -f 1 /proc/loadavg)
 for ((round = 1; round <= runs; ++round)); do
   for name in "${names[@]}"; do

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# What the launchers share; they source it.
+# Shared by the launchers, which source it.
 
-# Says what is wrong and how the launcher is called, which stands in its head comment.
+# Reports an error and the launcher's usage, which is in its head comment.
 fail_usage() {
   echo "$(basename "$0"): $1" >&2
   print_usage >&2
@@ -11,7 +11,7 @@ print_usage() {
   sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0"
 }
 
-# The program: $MESHFARM, or the one that was built or installed beside the scripts, or in the PATH.
+# The program: $MESHFARM, or the one built or installed beside the scripts, or the one in the PATH.
 find_meshfarm() {
   local here candidate
   here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -23,13 +23,13 @@ find_meshfarm() {
   return 1
 }
 
-# The words of a run that its workers need too, one a line: worker_words STAGE RUN-OPTIONS...
-# The program at hand reads the options, wherever they stand, and knows the run's key.
+# The options of a run that its workers need, too, one per line: worker_words STAGE RUN-OPTIONS...
+# The program itself parses the options, in any order, and knows the run's key.
 worker_words() {
   "${meshfarm:-${MESHFARM:?}}" run "$@" --worker-words
 }
 
-# A word as any POSIX shell reads it back.
+# A word, quoted so that any POSIX shell reads it unchanged.
 quoted() {
   printf "'%s'" "${1//\'/\'\\\'\'}"
 }

@@ -18,7 +18,7 @@ case "${1:-}" in
 esac
 [ $# -ge 1 ] || fail_usage "STAGE is missing"
 meshfarm=$(find_meshfarm)
-# As an option of the run it may stand anywhere.
+# As an option of the run, --workers may be anywhere.
 for word in "$@"; do
   [[ $word != --workers && $word != --workers=* ]] || exec "$meshfarm" run "$@" --bind 127.0.0.1
 done

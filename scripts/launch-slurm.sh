@@ -16,9 +16,10 @@
 #   MESHFARM  the program, at the same path on all nodes (default: the one built beside this script)
 set -euo pipefail
 
-# A worker of the array: run_element PROGRAM STAGE WORDS... All it needs comes as words, as a site may
-# pass no environment on (--export=NONE). A worker that left before the run was over (3: one of its
-# jobs hung, its ventilator did not answer) is started again, unless it was asked to leave.
+# A worker of the array: run_element PROGRAM STAGE WORDS... All it needs is passed as arguments, as
+# a site may not pass on the environment (--export=NONE). A worker that left before the run was over
+# (3: one of its jobs hung, or its ventilator did not answer) is started again, unless it was asked
+# to leave.
 run_element() {
   local program=$1 stage=$2 worker='' asked='' code
   shift 2
@@ -26,7 +27,7 @@ run_element() {
   while :; do
     "$program" worker "$stage" --threads "${SLURM_CPUS_PER_TASK:-1}" --wait 600 "$@" &
     worker=$!
-    # A signal ends the waiting only. The worker's code is kept for the wait after its end.
+    # A signal ends only the wait. The worker's exit code is kept for the wait after its end.
     while kill -0 "$worker" 2> /dev/null; do wait "$worker" || true; done
     code=0
     wait "$worker" || code=$?
@@ -37,8 +38,8 @@ run_element() {
   done
 }
 
-# Starts the run and sees it through: what asks this script to stop is the run's to obey and to tell
-# of. Sets code to what it said.
+# Starts the run and waits for its end. A request to stop is passed on to the run, which obeys and
+# reports. Sets `code` to the run's exit code.
 run=
 code=0
 see_run_through() {
@@ -49,7 +50,7 @@ see_run_through() {
   wait "$run" || code=$?
 }
 
-# The job of the one allocation: program, stage, run options, --, the words of its workers.
+# The job of the allocation: program, stage, run options, --, the options of its workers.
 run_allocation() {
   MESHFARM=$1
   MESHFARM_STAGE=$2
@@ -57,7 +58,7 @@ run_allocation() {
   local options=() workers word=$MESHFARM_STAGE.slurm-$SLURM_JOB_ID.code
   while [ "$1" != -- ]; do options+=("$1"); shift; done
   shift
-  # Where no environment is passed on, srun has no PATH to find bash by.
+  # Where the environment is not passed on, srun has no PATH to find bash in.
   srun --no-kill --kill-on-bad-exit=0 --wait=0 --ntasks-per-node=1 \
     "$BASH" -c "$(declare -f run_element); run_element \"\$@\"" run_element \
     "$MESHFARM" "$MESHFARM_STAGE" "$@" &
@@ -65,7 +66,7 @@ run_allocation() {
   see_run_through "${options[@]}"
   echo "$code" > "$word.tmp"
   mv "$word.tmp" "$word"
-  # Workers leave by themselves when the run is over; srun would wait for those of lost nodes.
+  # Workers leave by themselves when the run is over, but srun would wait for those of lost nodes.
   sleep 2
   kill -TERM "$workers" 2> /dev/null || true
   exit "$code"
@@ -117,7 +118,7 @@ launch_array() {
   exit "$code"
 }
 
-# The state of the job in the queue; nothing once Slurm has forgotten it.
+# The state of the job in the queue; empty once Slurm has forgotten it.
 job_state() {
   squeue --noheader --jobs "$job" --format %T 2> /dev/null || true
 }
@@ -137,9 +138,9 @@ launch_allocation() {
       *) break ;;
     esac
     sleep 1 &
-    wait $! # a trap need not wait for the sleep's end
+    wait $! # so that a trap does not have to wait for the end of the sleep
   done
-  # A shared folder may show the word late: listing makes an NFS client ask again.
+  # A shared folder may show the file late: listing the folder makes an NFS client ask again.
   for _ in 1 2 3 4 5; do
     ls "$(dirname "$word")" > /dev/null
     [ ! -e "$word" ] || break

@@ -41,12 +41,13 @@ shift
 words=$(worker_words "$stage" "$@") || exit $?
 mapfile -t words <<< "$words"
 
-# What a host runs: a worker that is asked to leave once nothing holds the other end of stdin.
+# What a host runs: a worker that is told to leave once nothing holds the other end of stdin.
 remote_command() {
   local command word
   command="$(quoted "$remote") worker $(quoted "$stage") --threads $1"
   for word in "${words[@]}"; do command+=" $(quoted "$word")"; done
-  # A background process gets no stdin of its own, so the watch reads the shell's by another number.
+  # A background process has no stdin of its own, so the watch reads the shell's as another
+  # descriptor.
   # shellcheck disable=SC2016 # for the host's shell
   printf 'exec 3<&0; %s < /dev/null 3<&- & worker=$!; %s & watch=$!; %s' "$command" \
     '{ cat <&3 > /dev/null; kill -TERM $worker; } 2> /dev/null' \
@@ -55,8 +56,8 @@ remote_command() {
 
 work=$(mktemp -d)
 mkfifo "$work/alive"
-# This script holds the writing end and every ssh reads: whatever happens to it, they see it end.
-# Opened for both first, as to open for one waits for the other.
+# This script holds the writing end, and every ssh reads: however this script ends, they see the end
+# of file. Opened for both first, as opening one end waits for the other.
 alive=$work/alive
 exec 8<> "$alive"
 exec 9> "$alive"
@@ -77,7 +78,7 @@ tend() {
     [ ! -e "$work/over" ] || return 0
     case $code in
       0) return 0 ;;
-      2 | 126 | 127) # called wrongly, or no such program there: that won't mend itself
+      2 | 126 | 127) # wrong usage, or no such program there: trying again won't help
         echo "launch-ssh.sh: no worker on $host: $(tail -n 1 "$log") (see MESHFARM_REMOTE)" >&2
         return 0 ;;
     esac
@@ -108,8 +109,8 @@ for host in "${hosts[@]}"; do
   tend "$host" 9>&- &
   tenders+=($!)
 done
-# A signal ends the waiting, not the run: that is asked to leave and says what came of it. Its code
-# is kept for the wait after its end.
+# A signal ends only the wait, not the run, which is told to leave and reports its result. Its exit
+# code is kept for the wait after its end.
 while kill -0 "$run" 2> /dev/null; do wait "$run" || true; done
 code=0
 wait "$run" || code=$?

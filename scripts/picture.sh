@@ -2,9 +2,9 @@
 # SPDX-FileCopyrightText: 2026 the meshfarm authors
 # SPDX-License-Identifier: MIT
 #
-# Draws the pictures in README.md: a mesh, and what is left of it at 1 %.
+# Draws the pictures in README.md: a mesh, and its simplification to 1 %.
 #
-#   scripts/picture.sh MESH [FOLDER]     into FOLDER (default: docs); build/meshfarm must be there
+#   scripts/picture.sh MESH [FOLDER]     into FOLDER (default: docs); needs build/meshfarm
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 mesh=${1:?"which mesh? scripts/get-dragon.sh gets the dragon"}

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Writes the golden checksums (tests/golden/checksums.txt) anew, after a version was raised:
+# Rewrites the golden checksums (tests/golden/checksums.txt), after a version was raised:
 #   renew-golden.sh [--force] [BUILD_FOLDER]       of build/
-# Where bytes have changed under the same version nothing is written: raise the version that is named,
-# and run this again. --force writes them all the same.
+# If bytes have changed under the same version, nothing is written: raise the version that is named,
+# and run this again. --force writes them anyway.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 renew=yes

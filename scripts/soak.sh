@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Kills (SIGKILL), asks to leave (SIGTERM) and stops (SIGSTOP, then SIGCONT) ventilator, sink and
-# workers of small real runs at random moments, starts again what left, and compares each result with
-# that of a quiet run.
+# Kills (SIGKILL), asks to leave (SIGTERM) and stops (SIGSTOP, then SIGCONT) the ventilator, sink
+# and workers of small real runs at random moments, restarts those that left, and compares each
+# result with that of an undisturbed run.
 #   soak.sh [RUNS] [FIRST_SEED] [BUILD_FOLDER] [here|farm]
 # 300 runs from seed 1, of build/; "farm": the input is cut and the result finished by jobs.
 # Says "300 runs, 0 bad" and exits 0 if every run ended with the same bytes.

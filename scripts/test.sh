@@ -14,12 +14,12 @@ for word in "$@"; do
     *) echo "usage: test.sh [--all]" >&2; exit 2 ;;
   esac
 done
-# Most tests wait for much of their time; under sanitizers they compute.
+# Most tests spend much of their time waiting; under sanitizers they compute.
 jobs=$(($(nproc) * 2 + 1))
 sanitized_jobs=$(($(nproc) + 1))
 build_options=(-DMESHFARM_TESTS=ON)
 if [ "$all" = no ]; then
-  # Sources of a layer compiled together, and optimised a little less: that takes half of the time.
+  # Compiles sources of a layer together and optimises a little less, which halves the time.
   release_build=$root/build-test
   build_options+=(-DMESHFARM_UNITY=ON "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG")
 else
@@ -39,7 +39,8 @@ release() {
   ctest --test-dir "$release_build" --output-on-failure -j "$jobs" --label-exclude lab
 }
 
-# One after the other: each has daemons and time limits of its own. They wait for most of their time.
+# One after the other: each has its own daemons and time limits. They spend most of their time
+# waiting.
 labs() {
   begin "labs"
   local log=$release_build/labs.log code=0
@@ -56,7 +57,7 @@ compile() {
     -DCMAKE_BUILD_TYPE=RelWithDebInfo -DMESHFARM_UNITY=ON -DMESHFARM_SANITIZE="$2" -- "${@:3}"
 }
 
-# sanitized FOLDER SANITIZERS CHOICE TESTS [TARGET...]: CHOICE is an option of ctest that chooses by
+# sanitized FOLDER SANITIZERS CHOICE TESTS [TARGET...]: CHOICE is an option of ctest that selects by
 # TESTS, a regular expression.
 sanitized() {
   begin "tests with $2 ($3 $4)"
@@ -79,8 +80,8 @@ mkdir -p "$root/data"
 
 release
 if [ "$all" = yes ]; then
-  # The labs wait for most of their time: meanwhile ASan's tests are compiled, and those that only
-  # compute are run.
+  # The labs spend most of their time waiting: meanwhile ASan's tests are compiled, and those that
+  # only compute are run.
   log=$root/build/beside-labs.log
   trap 'kill $(jobs -p) 2> /dev/null || true' EXIT
   beside_labs > "$log" 2>&1 &
@@ -89,7 +90,7 @@ if [ "$all" = yes ]; then
   wait "$beside" || { cat "$log" >&2; exit 1; }
   grep '^100% tests passed' "$log"
   sanitized build-asan address,undefined --label-exclude unit
-  # TSan does not see into libzmq, which is not built with it.
+  # TSan cannot see into libzmq, which is not built with it.
   TSAN_OPTIONS=ignore_noninstrumented_modules=1 \
     sanitized build-tsan thread --tests-regex \
     '^unit\.(util|staging|farm|transport|web|simulation|render)$' \
