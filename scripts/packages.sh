@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that building, testing and the demo need, where they are missing.
 # With --fuzz also those of the fuzzers, with --lab those of tests/lab (Slurm, NFS and ssh servers,
-# debootstrap: best on a machine of its own), with --lint those of lint.sh.
+# debootstrap: best on a machine of its own), with --lint those of lint.sh, with --npm npm.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config make python3 dpkg-dev file groff-base

@@ -38,10 +38,10 @@ struct CellTreeOptions {
 /// Cells that follow the density of the vertices. The first ones are those of a uniform grid. A
 /// cell with more than a 32nd of a part's vertices is replaced by a finer grid over the box of its
 /// own vertices, and so on, so that an outlier makes no other cell coarser. If there are too many
-/// cells, grids are coarsened: there are at most `most_cells`, and 256 per part if vertices lie in
-/// dense spots. Memory: about 110 bytes per cell. The cells depend on the set of vertices, not on
-/// its order. If too many vertices lie at one point, they count as one if they will be welded;
-/// otherwise they are dealt out, in their order, to cells at that point.
+/// cells, grids are coarsened: there are at most `most_cells`, plus up to 256 per part if vertices
+/// lie in dense spots. Memory: about 110 bytes per cell. The cells depend on the set of vertices,
+/// not on its order. If too many vertices lie at one point, they count as one if they will be
+/// welded; otherwise they are dealt out, in their order, to cells at that point.
 ///
 /// Add all vertices, and repeat that as long as refine() returns true. For vertices spread evenly
 /// over a surface, once is enough. Copies of a tree may each be given some of the vertices, and

@@ -41,7 +41,7 @@ void ResultChecker::check(CheckedResult& each, ReadPatience& shared, std::mutex&
     } else {
       stage_.verify(check.output.file, patience);
     }
-    // What another run accepted is recorded as this one's, too, as long as that goes on.
+    // What another run accepted is recorded as accepted by this run, too.
     each.to_record = is_fresh(check) || (known && !recorded_.contains(check.key));
   } catch (const IoError& error) {
     each.problem = {error.what(), FailureKind::unread};

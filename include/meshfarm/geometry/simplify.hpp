@@ -107,14 +107,12 @@ struct SimplifyGoal {
   std::uint64_t triangles = 0;
   /// Collapse no edge that costs more. A cost is an area times a squared distance: the sum, over
   /// the triangles round the edge just before the collapse, of area x squared distance of the new
-  /// vertex to their planes. Each edge of an open border adds a plane, weighted like three squares
-  /// on the edge; each crease edge adds two. The cost is at least 0.8 of the area that the surface
-  /// loses x the edge's squared length, since planes do not notice a spike drawing back. If the
-  /// surface gains area, the cost is at least 0.2 of the gain x the smaller of the squared edge
-  /// length and the square of five times the gain's width along the edge, or, if that is more, the
-  /// gain x three times the square of how far a tip reaches beyond everything round it. Sides of
-  /// ribbons weigh less, and their gains are free. The cost depends on nothing else, except where
-  /// the topology changes, so the costs of different parts can be compared.
+  /// vertex to their planes. Each crease edge adds two planes perpendicular to its triangles; each
+  /// edge of an open border adds one, at a tenth of a crease's weight except at corners. Area that
+  /// is lost or gained, tips, slivers, ends of ribbons and changes of the topology cost more than
+  /// the planes tell: docs/kernel.md has the terms. The cost depends only on the mesh near the
+  /// edge, and on the distance to the rest for what is removed as a whole, so the costs of
+  /// different parts can be compared.
   double max_cost = std::numeric_limits<double>::infinity();
   /// About how many triangles will be left when all following goals are met; 0: none follows. The
   /// farther away that is, the less care a collapse needs.

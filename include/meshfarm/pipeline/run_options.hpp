@@ -115,8 +115,8 @@ std::uint64_t target_triangles(const Manifest& manifest, const RunOptions& optio
 std::vector<std::size_t> chosen_columns(const Manifest& manifest, const RunOptions& options);
 
 /// Whether the stage's labels pin so many vertices that the number of triangles could not be
-/// reached, or only at their cost. They are dropped then, unless they are asked for by name, or an
-/// error is given instead of a number.
+/// reached, or only by giving the labels up. They are dropped then, unless they are asked for by
+/// name, or an error is given instead of a number.
 bool are_labels_too_fine(const Manifest& manifest, const RunOptions& options);
 
 /// The stage's labels, if the result is to have them.

@@ -13,7 +13,7 @@ namespace meshfarm {
 /// The number of collapses at each cost, to a factor of two.
 class CostCounts {
  public:
-  /// NaN counts as 0.
+  /// Negative costs and NaN count as 0.
   void add(double cost) {
     ++counts_[class_of(cost)];
     ++all_;

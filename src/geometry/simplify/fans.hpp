@@ -13,7 +13,7 @@ namespace meshfarm {
 /// Splits the triangles at a vertex into fans: Gueziec, Taubin, Lazarus, Horn, "Cutting and
 /// Stitching: Converting Sets of Polygons to Manifold Surfaces", IEEE TVCG 2001.
 ///
-/// Triangles that share an edge of two triangles are of one fan. Where four or more meet in an
+/// Triangles that share an edge of two triangles are of one fan. Where three or more meet in an
 /// edge, a chain of triangles that begins and ends there, with its ends facing alike, closes on
 /// itself and is a fan of its own; other chains that meet in such an edge belong together.
 class FanSplitter {

@@ -27,8 +27,8 @@ struct WedgeMerge {
 void merge_wedges(std::span<const WedgeMerge> merges, std::span<const CornerId> at_a,
                   std::span<const CornerId> at_b, std::span<CornerUvs> uvs);
 
-/// Texture coordinates as a linear function over the space around a triangle, or the sum of
-/// several. Relative to a place on the texture and a point in space.
+/// Texture coordinates as a linear function over the space around a triangle. Relative to a place
+/// on the texture and a point in space.
 struct LinearUv {
   std::array<Vec3, 2> slope{};
   std::array<double, 2> at_origin{};
