@@ -32,7 +32,7 @@ inline double texel_area(const std::array<TexelPoint, 3>& t) {
   return ((t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[1].y - t[0].y) * (t[2].x - t[0].x)) / 2;
 }
 
-/// The least distance to a side's line, counted inwards.
+/// The least distance to the line of a side; positive inside.
 inline double depth_inside(const std::array<TexelPoint, 3>& t, double x, double y) {
   double least = HUGE_VAL;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -59,8 +59,8 @@ void for_texels(const std::array<TexelPoint, 3>& t, std::uint32_t side, const Ta
   }
 }
 
-/// The triangle of each texel's centre, row by row from below; k_no_chart where there is none.
-/// No texel has two.
+/// The triangle at each texel's centre, row by row from below; k_no_chart where there is none.
+/// Checks that no texel has two.
 inline std::vector<std::uint32_t> owners_of(const Atlas& atlas, std::uint32_t side) {
   std::vector<std::uint32_t> owners(std::size_t{side} * side, k_no_chart);
   std::size_t twice = 0;
@@ -75,14 +75,14 @@ inline std::vector<std::uint32_t> owners_of(const Atlas& atlas, std::uint32_t si
   return owners;
 }
 
-/// No two charts come nearer than twice the margin, and none comes nearer to the rim than once.
+/// Checks that charts are at least two margins apart, and at least one margin from the rim.
 inline void check_margins(const Atlas& atlas, std::uint32_t side) {
   const std::vector<std::uint32_t> owners = owners_of(atlas, side);
   const auto chart_at = [&](std::uint32_t x, std::uint32_t y) {
     const std::uint32_t owner = owners[std::size_t{y} * side + x];
     return owner == k_no_chart ? k_no_chart : atlas.chart_of[owner];
   };
-  // What is near to a texel among its own is nearer to one of those.
+  // Whatever is near a texel surrounded by its own chart is nearer to one of its neighbours.
   const auto is_inner = [&](std::uint32_t x, std::uint32_t y, std::uint32_t chart) {
     return x > 0 && y > 0 && x + 1 < side && y + 1 < side && chart_at(x - 1, y) == chart &&
            chart_at(x + 1, y) == chart && chart_at(x, y - 1) == chart &&
@@ -109,7 +109,7 @@ inline void check_margins(const Atlas& atlas, std::uint32_t side) {
   CHECK(outside == 0);
 }
 
-/// Everything that is promised of an atlas with a margin.
+/// Makes an atlas, and checks everything that is promised of one with a margin.
 inline Atlas checked_atlas(const Mesh& mesh, const AtlasOptions& options) {
   Atlas atlas = make_atlas(mesh, options);
   REQUIRE(atlas.uvs.size() == mesh.triangles.size());

@@ -15,7 +15,7 @@
 
 namespace meshfarm::simplify_test {
 
-/// A clean mesh with what a pass works on, before its first collapse.
+/// A clean mesh and the data that a pass works on, before the first collapse.
 struct CollapseBench {
   explicit CollapseBench(Mesh made, double crease_angle = 0)
       : mesh(std::move(made)), creases(crease_angle) {

@@ -19,7 +19,7 @@ namespace {
 constexpr Appearance k_black{};
 constexpr Appearance k_white{65535, 65535, 65535, 0};
 
-/// The star of six triangles round the vertex at (0, 0), coloured by where they are.
+/// The star of six triangles round a vertex at `centre`, coloured by position.
 template <typename Colour>
 void add_star(AppearanceStar& star, Vec3 centre, const Colour& colour) {
   const Appearance at_centre = colour(centre);
@@ -53,7 +53,7 @@ Appearance half_white(Vec3 p) {
   return p.x + 0.4 * p.y > 0.7 ? k_white : k_black;
 }
 
-/// Of vertices away from the line.
+/// The number of wrongly coloured vertices away from the line.
 std::size_t wrong_colours(const Mesh& mesh, double margin) {
   std::size_t wrong = 0;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -114,7 +114,7 @@ TEST_CASE("what is linear costs nothing wherever the vertex goes, and is foretol
   quadric.squared_length = 1;
   star.add_to(quadric);
   for (const Vec3 x : {Vec3{}, Vec3{0.5, 0, 0}, Vec3{0.25, -0.5, 0}}) {
-    // But for what is not seen: one level of 256.
+    // Except for an invisible difference: one level of 256.
     CHECK(std::abs(dot(quadric.a * x - quadric.b * 2.0, x) + quadric.c) < 5e-5);
     for (std::size_t i = 0; i < 4; ++i) {
       CHECK(std::abs(star.at(x)[i] - static_cast<int>(ramp(x)[i])) <= 400);
@@ -170,7 +170,7 @@ TEST_CASE("a line between two colours stays where the shape is flat") {
 }
 
 TEST_CASE("appearances follow their vertices through dirt and gaps") {
-  // Each face twice, once a side, vertices that nothing uses, and two pieces that share a vertex.
+  // Each face twice, once per side; unused vertices; and two pieces that share a vertex.
   Mesh input = coloured(simplify_test::wavy_grid(60, 60), half_white);
   const std::vector<Triangle> once = input.triangles;
   for (const auto& [a, b, c] : once) input.triangles.push_back({a, c, b});

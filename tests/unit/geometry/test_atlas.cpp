@@ -25,12 +25,12 @@ double solid_area(const Mesh& mesh, std::size_t t) {
          2;
 }
 
-/// Texels for the area of each triangle, of the same for all: the least.
+/// The lowest texel density of a triangle, as a ratio of the density meant for all.
 double least_density(const Mesh& mesh, const Atlas& atlas, std::uint32_t side) {
   double least = HUGE_VAL;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const double usual = solid_area(mesh, t) * atlas.texels_per_unit * atlas.texels_per_unit;
-    if (usual < 0.5) continue;  // rounding shows
+    if (usual < 0.5) continue;  // too small: rounding shows
     least = std::min(least, texel_area(texel_corners(atlas, t, side)) / usual);
   }
   return least;

@@ -44,12 +44,12 @@ struct Shapes {
   }
 };
 
-/// An L of so long arms, of width 1.
+/// An L whose arms have the length `size` and the width 1.
 std::vector<Flat> angle_of(double size) {
   return {{0, 0}, {size, 0}, {size, 1}, {1, 1}, {1, size}, {0, size}};
 }
 
-/// How far apart two outlines are, the larger of the two axes; by points along them.
+/// The distance between two outlines, the larger of both axes'; by points along them.
 double apart(const Packing& packing, const Shapes& shapes, std::size_t a, std::size_t b) {
   const auto points = [&](std::size_t shape) {
     std::vector<Flat> made;

@@ -46,7 +46,7 @@ struct Mip {
     return texels[static_cast<std::size_t>(std::clamp(y, 0L, last) * (last + 1) +
                                            std::clamp(x, 0L, last))];
   }
-  /// As graphics cards do.
+  /// Filtered as graphics cards do it.
   std::array<double, 3> bilinear(double u, double v) const {
     const double x = u * side - 0.5, y = (1 - v) * side - 0.5;
     const long i = static_cast<long>(std::floor(x)), j = static_cast<long>(std::floor(y));
@@ -74,8 +74,8 @@ Mip mip_of(const BakedPicture& picture, std::uint32_t box) {
   return made;
 }
 
-/// How near the picture on the mesh is to the field, in decibels: at places all over each triangle,
-/// its sides and corners among them.
+/// How close the picture on the mesh comes to the field, in decibels: measured all over each
+/// triangle, sides and corners included.
 double decibels(const Mesh& mesh, const Atlas& atlas, const Mip& picture) {
   double squares = 0;
   std::size_t count = 0;
@@ -130,7 +130,7 @@ TEST_CASE("what bilinear filtering touches is of the surface, nothing of the pic
 }
 
 TEST_CASE("round each chart the surface goes on for the margin") {
-  // The height over the sheet's plane tells nothing, its coordinates tell where a texel is.
+  // The colours are x and y in the sheet's plane, so they tell where a texel is; z is left out.
   const Mesh mesh = grid(4, 4);
   const Atlas atlas = make_atlas(mesh, {.texture_size = 128, .margin_texels = 6});
   std::atomic<std::size_t> asked = 0;
@@ -147,7 +147,7 @@ TEST_CASE("round each chart the surface goes on for the margin") {
   const BakedPicture picture =
       bake(mesh, atlas.uvs, {.texture_size = 128, .margin_texels = 6}, place);
   CHECK(asked == 128 * 128);
-  // Levels rise evenly from one side of the picture to the other, outside of the sheet, too.
+  // Levels rise evenly from one side of the picture to the other, also outside the sheet.
   const auto level = [&](std::size_t x, std::size_t y, std::size_t c) {
     return int{picture.texels[3 * (y * 128 + x) + c]};
   };

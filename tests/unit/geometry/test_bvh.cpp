@@ -58,7 +58,7 @@ TEST_CASE("one far vertex makes no search slow, nor do points that are all far a
   for (const double far : {1e8, 1e16, 1e38}) {
     CAPTURE(far);
     const Mesh with_outlier = test::with_outlier(mesh, far);
-    // Nearly all points are on the one triangle that is long.
+    // Nearly all points are on the one long triangle.
     CHECK(seconds_to_measure(with_outlier, mesh) < 20 * usual + 1);
     CHECK(seconds_to_measure(mesh, with_outlier) < 20 * usual + 1);
     CHECK(seconds_to_measure(with_outlier, with_outlier) < 20 * usual + 1);

@@ -19,7 +19,7 @@ std::vector<Vec3> random_places(std::size_t count) {
   return places;
 }
 
-/// All that has a place, by codes of `scale` times that.
+/// The order of all finite places, by the codes of the places times `scale`.
 std::vector<std::uint32_t> order_of(const std::vector<Vec3>& places, double scale) {
   std::vector<MortonItem> items(places.size());
   for (std::uint32_t i = 0; i < items.size(); ++i) {
@@ -30,7 +30,7 @@ std::vector<std::uint32_t> order_of(const std::vector<Vec3>& places, double scal
   return numbers_of(items);
 }
 
-/// How far it is from each to the next.
+/// The length of the way from each place to the next.
 double way_along(const std::vector<Vec3>& places, const std::vector<std::uint32_t>& order) {
   double way = 0;
   for (std::size_t i = 1; i < order.size(); ++i) {
@@ -74,5 +74,5 @@ TEST_CASE(
   for (std::size_t i = 0; i < places.size(); ++i) {
     places[i] = {std::numeric_limits<double>::denorm_min() * static_cast<double>(i % 3), 0, 0};
   }
-  CHECK(order_of(places, 1) == expected);  // 1 over their size is no number
+  CHECK(order_of(places, 1) == expected);  // 1 / their size is not finite
 }

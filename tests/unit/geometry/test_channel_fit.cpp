@@ -21,7 +21,7 @@ Vec3 random_vector(std::uint64_t n) {
          Vec3{1, 1, 1};
 }
 
-/// The values of a mesh's vertices by a formula.
+/// Two values per point: a formula's, and 7.
 template <class Value>
 std::vector<float> values_at(const std::vector<Vec3>& points, Value value) {
   std::vector<float> values;
@@ -32,7 +32,7 @@ std::vector<float> values_at(const std::vector<Vec3>& points, Value value) {
   return values;
 }
 
-/// `fine` as seen on `coarse`: two channels, of which the second is 7 everywhere.
+/// A fit on `coarse` of the values at the points: two channels, the second is 7 everywhere.
 template <class Value>
 ChannelFit fitted(const Mesh& coarse, const std::vector<Vec3>& points, Value value,
                   unsigned threads = 1) {
@@ -75,7 +75,7 @@ TEST_CASE("what is linear on each triangle is found again") {
   const std::vector<float> values = fit.values();
   REQUIRE(values.size() == 2 * sheet.positions.size());
   for (std::size_t v = 0; v < sheet.positions.size(); ++v) {
-    // Each is held a little to the mean of what is round it, which shows at the rim.
+    // Each value is pulled a little towards its neighbours' mean, which shows at the rim.
     CHECK(std::abs(static_cast<double>(values[2 * v]) - slope(sheet.positions[v])) < 0.1);
     CHECK(values[2 * v + 1] == doctest::Approx(7));
   }
@@ -88,7 +88,7 @@ TEST_CASE("the error told is what is measured") {
   const Mesh sphere = test::icosphere(2);
   const std::vector<Vec3> points = test::icosphere(5).positions;
   const auto wave = [](Vec3 p) { return 100 * std::sin(5 * p.x) + 20 * p.y; };
-  ChannelFit fit(sphere, {2, 1, 1});  // takes them all
+  ChannelFit fit(sphere, {2, 1, 1});  // takes all points
   fit.add(points, values_at(points, wave));
   const std::vector<float> values = fit.values();
   const Bvh bvh(sphere, 1);
@@ -105,7 +105,7 @@ TEST_CASE("the error told is what is measured") {
   CHECK(fit.rms(values)[0] == doctest::Approx(rms).epsilon(0.01));
   CHECK(rms > 1);
 
-  // Less than if each vertex had what is nearest to it.
+  // Lower than if each vertex had the wave's value at its own place.
   ChannelFit other(sphere, {2, 1, 1});
   other.add(points, values_at(points, wave));
   CHECK(rms < 0.95 * other.rms(values_at(sphere.positions, wave))[0]);

@@ -65,7 +65,7 @@ TEST_CASE("a small triangle gets few points, a large one 66 and those round the 
   CHECK(near >= 49);
   points.clear();
   append_points(k_large.positions, k_large.triangles[0], k_corner, {1, 6}, points);
-  CHECK(points.size() == 66 + 16);  // a quarter of them is on the triangle
+  CHECK(points.size() == 66 + 16);  // a quarter of these lies on the triangle
   CHECK(are_on(k_large, k_large.triangles[0], points));
 }
 

@@ -36,12 +36,12 @@ Mesh roof() {
   return grid(k_side, k_side, [](double x, double) { return 0.5 - std::abs(x - 0.5); });
 }
 
-/// Vertices of the two triangles at the mesh's edge 0-1 and no others: a bow tie's middle.
+/// Only the two triangles at edge 0-1: a bow tie's middle.
 Mesh two_triangles() {
   return {{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, -1, 0}}, {{0, 1, 2}, {1, 0, 3}}};
 }
 
-/// Two tubes of three sides with one ring 0-1-2 in common: no triangle is between 0, 1 and 2.
+/// Two three-sided tubes that share the ring 0-1-2; there is no triangle between 0, 1 and 2.
 Mesh waist() {
   Mesh mesh = {{{1, 0, 0}, {-0.5, 0.8, 0}, {-0.5, -0.8, 0}}, {}};
   for (const double z : {2.0, -2.0}) {
@@ -77,7 +77,7 @@ TEST_CASE("a border vertex goes along the border and takes one triangle") {
   CHECK(along.triangles == 1);
   CHECK(along.cost == 0);
   CHECK(along.position.y == 0);
-  // One from inside is drawn to it; the border stays as it is.
+  // A vertex from inside is drawn to the border, which stays as it is.
   const Collapse inwards = judged(bench, at(2, 0), at(2, 1));
   CHECK(inwards.triangles == 2);
   CHECK(inwards.position == bench.mesh.positions[at(2, 0)]);
@@ -94,12 +94,12 @@ TEST_CASE("a collapse is bounded by what it may cost and by what it may remove")
 }
 
 TEST_CASE("what would pinch a surface is refused for its topology") {
-  // The edge 0-1 has a common neighbour, 2, with which it makes no triangle.
+  // The ends of edge 0-1 have a common neighbour, 2, but 0-1-2 is no triangle.
   CollapseBench bench(waist());
   const Collapse pinched = judged(bench, 0, 1);
   CHECK(pinched.triangles == 0);
   CHECK(pinched.by_topology);
-  // Two triangles would become nothing, and a tetrahedron two triangles back to back.
+  // Two triangles would vanish, and a tetrahedron would become two triangles back to back.
   CollapseBench pair(two_triangles());
   CHECK(judged(pair, 0, 1).by_topology);
   CollapseBench closed(test::tetrahedron());
@@ -120,7 +120,7 @@ TEST_CASE("a collapse that would turn a triangle over is refused") {
   const bool to_rim = made.triangles > 0 && made.position == fan.positions[5];
   CHECK(!to_rim);
   CHECK(!made.by_topology);
-  // Without the notch it may.
+  // Without the notch the collapse is allowed.
   fan.positions[6] = {2, -3, 0};
   CollapseBench round(fan);
   CHECK(judged(round, 0, 5).position == fan.positions[5]);

@@ -16,17 +16,17 @@ using namespace meshfarm;
 
 namespace {
 
-constexpr std::uint32_t k_voxels = 36;  // a side
+constexpr std::uint32_t k_voxels = 36;  // per side
 constexpr std::uint32_t k_row_of_corners = k_voxels + 1;
 constexpr std::uint32_t k_grains = 24;  // that touch each other, and nothing beside them
 
-/// Of the n-th of a cube of points, `side` of them a side.
+/// The position of the n-th point of a cubic grid with `side` points per side.
 Vec3 place_on_grid(std::uint32_t n, std::uint32_t side) {
   const std::uint32_t layer = n / (side * side), row = n / side % side;
   return {1.0 * (n % side), 1.0 * row, 1.0 * layer};
 }
 
-/// By the nearest of some points: which grain each voxel belongs to.
+/// The grain of each voxel: the nearest of some points.
 std::vector<std::uint32_t> grains_of_voxels() {
   std::vector<Vec3> middles;
   for (std::uint64_t i = 0; i < k_grains; ++i) {
@@ -44,7 +44,7 @@ std::vector<std::uint32_t> grains_of_voxels() {
   return grains;
 }
 
-/// Each vertex goes half of the way to the middle of its neighbours.
+/// Moves each vertex half of the way to the mean of its neighbours.
 void smooth_walls(Mesh& mesh) {
   std::vector<Vec3> sums(mesh.positions.size());
   std::vector<double> counts(mesh.positions.size());
@@ -63,8 +63,7 @@ void smooth_walls(Mesh& mesh) {
   }
 }
 
-/// The walls between grains, as a segmented volume gives them: three or more meet along jagged
-/// lines.
+/// The walls between the grains of a segmented volume: three or more meet along jagged lines.
 Mesh walls_of_grains() {
   const std::vector<std::uint32_t> grains = grains_of_voxels();
   Mesh mesh;

@@ -25,7 +25,7 @@ std::uint64_t reached(const Mesh& mesh) {
   return reduced(mesh, 1, options).triangles.size();
 }
 
-/// Charts round points of a surface, each seen from its own side.
+/// Charts round random vertices of a surface, each projected along its own direction.
 Mesh patches(Mesh mesh, std::uint32_t many) {
   Random random(many);
   std::vector<Vec3> seeds;
@@ -84,7 +84,7 @@ TEST_CASE("islands keep a triangle each") {
 }
 
 TEST_CASE("charts of two corners go") {
-  // A strip whose middle triangle, at its side, is a chart of its own.
+  // A strip in which a triangle at the side, in the middle, is a chart of its own.
   Mesh strip = mapped(flat_grid(12, 4), [](Vec3 p, Vec3 c) {
     const bool apart = c.y < 0.25 && c.x > 0.5 && c.x < 0.75;
     return uv(p.x + (apart ? 3 : 0), p.y);
@@ -116,7 +116,7 @@ TEST_CASE("floors of parts add up") {
   const Mesh whole = chart_grid(flat_grid(60, 60), 6);
   ColumnFloor sum;
   for (const bool upper : {false, true}) {
-    // The halves of the square have their common row first.
+    // Each half of the square has the row common to both first.
     Mesh part;
     const std::uint32_t row = 61;
     const std::uint32_t shared = 25 * row;

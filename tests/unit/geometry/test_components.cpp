@@ -53,7 +53,7 @@ TEST_CASE("pieces that nothing is left of are told by number and area") {
   GoneComponents gone = find_gone_components(before, after, 1);
   CHECK(gone.components == 2);
   CHECK(gone.area == doctest::Approx(gone.area_of_all / 2).epsilon(0.05));
-  // Two halves of one are no two.
+  // Two pieces in the place of one count as that one only.
   add(after, test::octahedron(), 1, {0, 0, 0});
   CHECK(find_gone_components(before, after, 1).components == 2);
   add(after, test::tetrahedron(), 0.1, {0, 5.01, 0});

@@ -17,8 +17,8 @@ TEST_CASE("of the costs those near the greatest are dear") {
   for (int i = 0; i < 30; ++i) counts.add(1e-9 * (1 + i));
   CHECK(counts.dear() == 30);
   for (int i = 0; i < 5; ++i) counts.add(6.4e-7);
-  CHECK(counts.dear() >= 5 + 21);  // a 64th of it and more
-  CHECK(counts.dear() <= 5 + 26);  // a 128th of it and more
+  CHECK(counts.dear() >= 5 + 21);  // at least a 64th of the greatest
+  CHECK(counts.dear() <= 5 + 26);  // at least a 128th
 }
 
 TEST_CASE("a share of the costs is below their quantile, and no less below half of it") {

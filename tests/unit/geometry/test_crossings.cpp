@@ -22,7 +22,7 @@ std::uint64_t crossing(const Mesh& mesh) {
   return *one;
 }
 
-/// Two triangles in any order of their corners and of themselves.
+/// Whether two triangles cross; checks that this is the same in any order of corners and triangles.
 bool cross(const TriangleCorners& a, const TriangleCorners& b) {
   const auto turned = [](const TriangleCorners& t, std::size_t by, bool over) {
     TriangleCorners made{t[by], t[(by + 1) % 3], t[(by + 2) % 3]};
@@ -59,7 +59,7 @@ Mesh shifted(Mesh mesh, Vec3 by) {
   return mesh;
 }
 
-/// A fan of triangles that all have one corner.
+/// A fan of triangles that share one corner.
 Mesh fan(std::uint32_t count) {
   Mesh mesh{{{0, 0, 0}}, {}};
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -150,7 +150,7 @@ TEST_CASE("crossings: two spheres cross in a ring, as all pairs tell") {
   test::append(spheres, shifted(test::icosphere(3), {0.9, 0.3, 0.1}));
   const std::uint64_t all = crossing(spheres);
   CHECK(all == crossing_slowly(spheres));
-  // Of each sphere a circle: some 40 triangles across, each cut once or twice.
+  // A circle on each sphere: some 40 triangles across, each cut once or twice.
   CHECK(all > 100);
   CHECK(all < 400);
   Mesh soup;

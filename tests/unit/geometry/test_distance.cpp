@@ -134,7 +134,7 @@ TEST_CASE("distance: the tree finds what a look at every triangle finds") {
 }
 
 TEST_CASE("distance: the tree tells sheets apart that floats do not") {
-  // All eight within two steps of a float, so that only careful rounding finds the nearest.
+  // All eight sheets lie within two float steps: only careful rounding finds the nearest.
   Mesh mesh;
   const Mesh sheet = test::grid(6, 6);
   for (int layer = 0; layer < 8; ++layer) {
@@ -211,7 +211,7 @@ TEST_CASE("distance: far from the origin as near it") {
 }
 
 TEST_CASE("distance: rms, mean and maximum of a slope above a plane") {
-  // Heights 0 to 1, all alike often: mean 1/2, root mean square 1/sqrt(3).
+  // Heights 0 to 1, evenly distributed: mean 1/2, root mean square 1/sqrt(3).
   Mesh slope = test::grid(9, 4);
   for (Vec3& p : slope.positions) p.z = p.x / 9;
   const Mesh plane = moved(test::grid(1, 1), {-50, -50, 0}, 100);
@@ -223,7 +223,7 @@ TEST_CASE("distance: rms, mean and maximum of a slope above a plane") {
 }
 
 TEST_CASE("distance: samples are spread by area, not by triangle") {
-  // A big square in the plane and, of a hundredth of its area but many more triangles, one above.
+  // A big square in the plane, and above it one with 1 % of its area but many more triangles.
   Mesh mesh = moved(test::grid(1, 1), {}, 10);
   const Mesh fine = moved(test::grid(30, 30), {0, 0, 1}, 1.0 / 30);
   for (const auto& [a, b, c] : fine.triangles) mesh.triangles.push_back({a + 4, b + 4, c + 4});

@@ -14,7 +14,7 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-/// For whole numbers below 2^40.
+/// side_of_plane() for whole numbers below 2^40.
 int slow_side(const std::array<std::array<std::int64_t, 3>, 4>& p) {
   const auto at = [&](std::size_t i, std::size_t k) -> Wide { return p[i][k] - p[0][k]; };
   const Wide volume = at(1, 0) * (at(2, 1) * at(3, 2) - at(2, 2) * at(3, 1)) +
@@ -82,7 +82,7 @@ TEST_CASE("sides of planes see the last bit of numbers of all lengths") {
     REQUIRE(side_of_plane(a, c, b, next_above(d)) == -1);
     REQUIRE(side_of_plane(d, c, b, a) == 0);
   }
-  // Some near the origin, some far: differences take more than a double.
+  // Some points are near the origin, some far: their differences do not fit into a double.
   const Vec3 a{0x1p-60, 0, 0}, b{1, 0x1p-70, 0}, c{0, 1, 0};
   CHECK(side_of_plane(a, b, c, {0.5, 0.5, 0}) == 0);
   CHECK(side_of_plane(a, b, c, {0.5, 0.5, 0x1p-80}) == 1);
@@ -100,7 +100,7 @@ TEST_CASE("turns are exact in each plane of coordinates") {
     };
     CHECK(turn(at(0, 0), at(1, 0), at(0, 1), axes) == 1);
     CHECK(turn(at(0, 0), at(0, 1), at(1, 0), axes) == -1);
-    // On a line through points that are no multiples of each other in doubles.
+    // On a line through points that are not multiples of each other in doubles.
     const double third = 1.0 / 3;
     CHECK(turn(at(-third, -third), at(third, third), at(0.7, 0.7), axes) == 0);
     CHECK(turn(at(-third, -third), at(third, third), at(0.7, std::nextafter(0.7, 1.0)), axes) == 1);

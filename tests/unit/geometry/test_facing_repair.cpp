@@ -29,7 +29,7 @@ Vec3 center_of(const Mesh& mesh, std::uint32_t triangle) {
   return (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) * (1.0 / 3);
 }
 
-/// The triangles whose centres are nearest to a triangle of the original that faces against them.
+/// The triangles that face against the original's triangle nearest to their centre.
 std::vector<std::uint32_t> facing_away(const Mesh& mesh, const Mesh& original) {
   const DistanceMeter to_original(original, 1);
   std::vector<std::uint32_t> away;
@@ -40,7 +40,7 @@ std::vector<std::uint32_t> facing_away(const Mesh& mesh, const Mesh& original) {
   return away;
 }
 
-/// Two sheets that face apart, the upper one so far above the other.
+/// Two sheets that face away from each other, the upper one `apart` above the lower one.
 Mesh wall(std::uint32_t cells, double apart) {
   Mesh mesh = test::grid(cells, cells);
   const Mesh lower = mesh;
@@ -131,8 +131,8 @@ TEST_CASE("facing: vertices that have sunk to the other sheet, and slivers turne
 
 TEST_CASE("facing: a small piece that is narrower than the original's") {
   const Mesh original = test::icosphere(3);
-  // Four triangles inside the sphere, of which one is turned inside out by a vertex that went
-  // through the triangle opposite.
+  // Four triangles inside the sphere. One is turned inside out, as a vertex went through the
+  // opposite triangle.
   Mesh mesh = test::tetrahedron();
   Vec3 center{};
   for (const Vec3& p : mesh.positions) center = center + p * 0.25;
@@ -154,7 +154,7 @@ TEST_CASE("changing mesh: what a change concerns, and what it may not do") {
   ChangingMesh changing(mesh);
   CHECK(changing.is_inside(12));
   CHECK_FALSE(changing.is_inside(0));
-  // The middle of one sheet through the other: their triangles would cross.
+  // The middle of one sheet would go through the other: their triangles would cross.
   const MeshChange through{{{12, mesh.positions[12] + Vec3{0, 0, 1.5}}}, {}};
   const std::vector<std::uint32_t> concerned = changing.concerned_by(through);
   CHECK(concerned.size() == changing.fan(12).size());

@@ -87,7 +87,8 @@ TEST_CASE("fans: neighbours that face opposite ways are told") {
   CHECK(fans_of(corners) == Fans{0, 0, 0});
   CHECK(splitter_of(corners).has_turned());
   CHECK(splitter_of(corners).kind() == Kind::complex);
-  // A chain that begins and ends at an edge of four but does not face alike is not closed.
+  // A chain that begins and ends at an edge of four triangles is not closed if it does not face
+  // the same way throughout.
   const std::vector<Corner> seam{{1, 2}, {3, 2}, {1, 3}, {1, 4}, {4, 5}, {5, 1}};
   CHECK(fans_of(seam) == Fans{0, 0, 0, 1, 1, 1});
 }

@@ -33,7 +33,7 @@ double longest_by_shortest(const Mesh& mesh, const Triangle& t) {
   return std::max({ab, bc, ca}) / std::min({ab, bc, ca});
 }
 
-/// Where the tube's ring passes the plane through the axis and `p`: the distance from its centre.
+/// The distance of `p` from the circle along the middle of the tube.
 double from_ring(Vec3 p) {
   return std::hypot(std::hypot(p.x, p.y) - 1, p.z);
 }

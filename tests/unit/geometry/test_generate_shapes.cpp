@@ -58,7 +58,7 @@ double share_of_area(const Mesh& mesh, const Holds& holds) {
   return held / all;
 }
 
-/// Of positions and triangles, the same whatever the batches.
+/// A checksum of positions and triangles, which does not depend on the batches.
 std::string checksum_of(const Mesh& mesh) {
   std::string bytes(mesh.positions.size() * sizeof(Vec3), '\0');
   std::memcpy(bytes.data(), mesh.positions.data(), bytes.size());
@@ -160,7 +160,7 @@ TEST_CASE("foam: handles in proportion to the triangles") {
   const double few = genus_of(measure_topology(make_shape(Shape::foam, 50'000)));
   const double many = genus_of(measure_topology(make_shape(Shape::foam, 500'000)));
   CHECK(few > 40);
-  CHECK(many > 10 * few);  // the box's walls have none, and matter less
+  CHECK(many > 10 * few);  // the box's walls have no handles, and matter less
   CHECK(many < 20 * few);
 }
 
@@ -210,7 +210,7 @@ TEST_CASE("block: six holes, exactly flat faces, right angles") {
     });
     CHECK(flat > 0.5);
     CHECK(flat < 0.95);
-    CHECK(volume_of(mesh) > 2);  // of 3 before the holes
+    CHECK(volume_of(mesh) > 2);  // 3 before the holes
     CHECK(volume_of(mesh) < 2.6);
   }
 }
@@ -218,7 +218,7 @@ TEST_CASE("block: six holes, exactly flat faces, right angles") {
 TEST_CASE("shell: two sheets a ten-thousandth apart, which do not meet") {
   const Mesh both = make_shape(Shape::shell, 40'000);
   CHECK(measure_topology(both).components == 2);
-  // Rings take turns: the sheet of a triangle is told by its place in the file.
+  // Rings of the two sheets alternate: a triangle's place in the file tells its sheet.
   Mesh outer{both.positions, {}}, inner{both.positions, {}};
   for (std::size_t i = 0; i < both.triangles.size(); ++i) {
     (i % 4 < 2 ? outer : inner).triangles.push_back(both.triangles[i]);

@@ -38,14 +38,14 @@ bool is_within(const Mesh& from, const Mesh& to, double distance) {
   return is;
 }
 
-/// Whether the bounds hold what is known, and are as near as they should be.
+/// Checks that the bounds enclose the known distance and are about `gap` apart at most.
 void check_bounds(const DistanceBounds& found, double known, double gap = k_gap) {
   CHECK(found.lower <= known);
   CHECK(found.upper >= known);
   CHECK(found.upper - found.lower <= gap * 1.001);
 }
 
-/// A single triangle with legs of that length.
+/// A single right triangle with legs of length `leg`.
 Mesh large_triangle(double leg) {
   return {{{0, 0, 0}, {leg, 0, 0}, {0, leg, 0}}, {{0, 1, 2}}};
 }
@@ -69,7 +69,7 @@ Mesh mixed_triangles(std::uint32_t count, unsigned seed) {
   return mesh;
 }
 
-/// By points on a grid of each triangle, its sides among them.
+/// The greatest distance of points on a grid in each triangle, sides included.
 double sampled_distance(const Mesh& from, const Mesh& to) {
   constexpr int k_steps = 40;
   std::vector<Vec3> points;
@@ -119,7 +119,7 @@ TEST_CASE("hausdorff: corners that lie on a surface do not prove the triangle be
   test::append(slotted, right);
   const Mesh cover = {{{4, 1, 0}, {7, 4, 0}, {4, 7, 0}, {0, 4, 0}}, {{0, 1, 2}}};
   check_bounds(bounds_of(cover, slotted), 1.5);
-  // Over a valley: the slopes are at 45 degrees, so the middle is as far as 5 / sqrt(2).
+  // Over a valley: the slopes are at 45 degrees, so the middle is 5 / sqrt(2) away.
   const Mesh valley = {{{0, 0, 5}, {0, 10, 5}, {5, 0, 0}, {5, 10, 0}, {10, 0, 5}, {10, 10, 5}},
                        {{0, 2, 1}, {1, 2, 3}, {2, 4, 3}, {3, 4, 5}}};
   const Mesh lid = {{{0, 0, 5}, {10, 5, 5}, {0, 10, 5}}, {{0, 1, 2}}};

@@ -12,7 +12,7 @@ using namespace meshfarm::simplify_test;
 
 namespace {
 
-/// Turns about so many per cent of the triangles, and returns how many.
+/// Turns over about `per_cent` per cent of the triangles, and returns how many.
 std::uint64_t turn_some(std::span<Triangle> triangles, std::uint32_t per_cent, Random& random) {
   std::uint64_t turned = 0;
   for (Triangle& t : triangles) {
@@ -28,7 +28,7 @@ std::vector<Triangle> all_turned(std::vector<Triangle> triangles) {
   return triangles;
 }
 
-/// A strip of quadrilaterals that is closed after half a turn.
+/// A strip of quadrilaterals, closed after half a turn.
 Mesh moebius_strip(std::uint32_t segments, std::uint32_t across) {
   Mesh mesh;
   for (std::uint32_t i = 0; i < segments; ++i) {

@@ -45,7 +45,7 @@ TEST_CASE("point index: the least value of those that are near") {
   const std::vector<Vec3> points = random_points(2000);
   const PointIndex index(points);
   for (const Vec3 from : random_points(50)) {
-    // Some do not count, and some stand for what is a little farther.
+    // Only some points count, and some of those as if they were a little farther.
     const auto value = [&](std::uint32_t point) {
       const double squared = squared_length(points[point] - from);
       return point % 50 == 7 ? squared * (point % 3 == 0 ? 1.2 : 1.0) : HUGE_VAL;

@@ -36,7 +36,7 @@ Mesh metered_soup(std::size_t triangles, unsigned seed) {
   return mesh;
 }
 
-/// In and around the unit cube, some of them far off.
+/// Points in and around the unit cube, some of them far away.
 std::vector<Vec3> scattered(std::size_t count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -63,7 +63,7 @@ struct Shown {
   std::size_t pieces = 0;
 };
 
-/// Shows the mesh in pieces of so many triangles.
+/// Shows the mesh in pieces of `piece` triangles.
 Shown metered(std::span<const Vec3> points, const Mesh& mesh, PointMeterHints hints,
               std::size_t piece = 100, unsigned threads = 1) {
   hints.surface = std::span(mesh.positions).first(10);

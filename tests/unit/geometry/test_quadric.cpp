@@ -178,9 +178,9 @@ TEST_CASE("a tip that goes beyond all round it costs the area gained as far out 
   CHECK(near > 0);
   CHECK(star.cost_of_protruding(1, k_kept, {0, 0, 2}, -gained) == doctest::Approx(4 * near));
   CHECK(star.cost_of_protruding(1, k_kept, {0, 0, 2}, -2 * gained) == doctest::Approx(8 * near));
-  CHECK(star.cost_of_protruding(1, k_kept, {0, 0, 2}, gained) == 0);  // that is lost
+  CHECK(star.cost_of_protruding(1, k_kept, {0, 0, 2}, gained) == 0);  // area that is lost
   CHECK(star.cost_of_protruding(1, k_kept, {9, 9, 0.9}, -gained) == 0);
-  // The other end is no tip: what is round it lies as far.
+  // The other end is not a tip: its neighbours lie farther out.
   CHECK(star.cost_of_protruding(1, k_kept, {0, 0, -1.5}, -gained) == 0);
   CHECK(star.cost_of_protruding(1, k_kept, {0, 0, -2.5}, -gained) == doctest::Approx(near));
 }

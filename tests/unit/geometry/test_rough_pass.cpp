@@ -25,7 +25,7 @@ struct RoughBench : CollapseBench {
   RoughPartners partners() { return {state(), touched}; }
 };
 
-// A square sheet, smooth waves in one corner of it: an eighth of a side wide.
+// A square sheet with smooth waves in one corner, an eighth of the side wide.
 constexpr std::uint32_t k_rough_side = 160;
 bool in_corner(Vec3 p) {
   return p.x < k_rough_side / 8.0 && p.y < k_rough_side / 8.0;
@@ -42,7 +42,7 @@ Mesh sheet_with_detail() {
 }  // namespace
 
 TEST_CASE("a rough pass merges a vertex with its nearest neighbour that may") {
-  // A fan of six round vertex 0, all at distances of their own.
+  // A fan of six vertices round vertex 0, all at different distances.
   Mesh mesh{{{0, 0, 0}, {5, 0, 0}, {2, 3, 0}, {-2, 2, 0}, {-4, 0, 0}, {-2, -4, 0}, {3, -3, 0}},
             {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 6}, {0, 6, 1}}};
   RoughBench bench(mesh);
@@ -51,7 +51,7 @@ TEST_CASE("a rough pass merges a vertex with its nearest neighbour that may") {
   CHECK(bench.partners().of(0) == 2);
   bench.flags[2] |= k_fixed;
   CHECK(bench.partners().of(0) == 4);
-  // What has moved counts where it is now.
+  // A vertex that has moved counts where it is now.
   bench.mesh.positions[5] = {0, -1, 0};
   CHECK(bench.partners().of(0) == 5);
   bench.flags[0] |= k_fixed;
@@ -88,13 +88,13 @@ TEST_CASE("the limit of a rough pass grows with its share") {
 }
 
 TEST_CASE("a rough pass takes nothing that is far dearer than half of what it takes") {
-  // Where more than half is flat, only what is flat.
+  // Where more than half is flat, only flat places are taken.
   RoughBench sheet(sheet_with_detail());
   CollapseJudge judge(sheet.state());
   for (const double share : {0.5, 0.97, 0.995, 1.0}) {
     CHECK(sheet.partners().estimate_limit(judge, share, HUGE_VAL) == 0);
   }
-  // One in thirteen vertices is of a sphere far larger than the first.
+  // One vertex in thirteen belongs to spheres far larger than the first one.
   Mesh mesh = sphere(6);
   for (Vec3& p : mesh.positions) p = p * 0.01;
   const Mesh large = sphere(2);
@@ -119,7 +119,7 @@ TEST_CASE("a surface that wants long triangles gets no rough pass") {
   CHECK(has_limit(sheet_with_detail()));
   CHECK_FALSE(has_limit(wide_torus(200, 100)));
   CHECK_FALSE(has_limit(ring_of_tube(1000, 40, 0.04)));
-  // Beside balls that are dear whatever goes, too.
+  // The same beside balls, where every collapse is expensive.
   Mesh mesh = ring_of_tube(1000, 40, 0.04);
   for (Vec3& p : mesh.positions) p = p * 0.3;
   const Mesh ball = sphere(5);

@@ -16,8 +16,8 @@ using namespace meshfarm;
 
 namespace {
 
-/// A wavy sheet of n x n cells, and the same 0.01 below it that faces down. Of the lower one the
-/// last rows may be left out.
+/// A wavy sheet of n x n cells, and the same sheet 0.01 below it, facing down. The last rows of
+/// the lower sheet may be left out.
 Mesh wavy_wall(std::uint32_t n, std::uint32_t rows_left_out = 0) {
   Mesh wall = test::grid(n, n);
   for (Vec3& p : wall.positions) p.z = std::sin(0.7 * p.x) * std::cos(0.6 * p.y);
@@ -37,7 +37,7 @@ std::optional<SheetPairs> pairs_of(const Mesh& mesh, const SheetPairs::Wall& wal
   return SheetPairs::find(mesh, flags, wall);
 }
 
-/// Each triangle by its corners' positions, in an order of its own.
+/// The triangles as their corners' positions, sorted.
 std::vector<std::array<std::array<double, 3>, 3>> shape_of(const Mesh& mesh) {
   std::vector<std::array<std::array<double, 3>, 3>> shape;
   for (const Triangle& t : mesh.triangles) {

@@ -101,7 +101,7 @@ TEST_CASE("the same input gives the same bytes") {
 TEST_CASE("vertices keep their order") {
   const Mesh mesh = wide_torus(40, 40);
   const Mesh result = reduced_to(mesh, 2000);
-  // Vertices that never collapsed still have their input's position.
+  // Vertices that never collapsed still have their position in the input.
   std::size_t at = 0;
   std::size_t untouched = 0;
   for (const Vec3 p : result.positions) {

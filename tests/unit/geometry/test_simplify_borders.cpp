@@ -38,7 +38,7 @@ bool on_rim(Vec3 p) {
   return p.x == 0 || p.x == 1 || p.y == 0 || p.y == 1;
 }
 
-/// A sheet bent to waves, in tiles with sides like jigsaw pieces, that share no vertices.
+/// A wavy sheet of tiles that share no vertices and have sides like jigsaw pieces.
 Mesh tiles(std::uint32_t across, std::uint32_t cells) {
   const Mesh tile = flat_grid(cells, cells);
   Mesh mesh;
@@ -118,7 +118,7 @@ TEST_CASE("open borders take no more triangles than the surface gives") {
   Simplifier simplifier(mesh, {});
   simplifier.reduce({mesh.triangles.size() / 10});
   const Mesh& result = simplifier.mesh();
-  // 7.0e-4 and 7.2e-4 where borders are as heavy as creases.
+  // 7.0e-4 and 7.2e-4 if borders weigh as much as creases.
   CHECK(measure_distance(mesh, result, {.samples = 50'000}).rms < 6.5e-4);
   CHECK(measure_distance(result, mesh, {.samples = 50'000}).rms < 6.5e-4);
 }
@@ -192,7 +192,7 @@ TEST_CASE("with a seam only edges at it collapse") {
   }
   CHECK(flagged > 0);
   CHECK(moved > 0);
-  // What is far from the seam is all there.
+  // Everything far from the seam is still there.
   const auto far = [](const Mesh& m) {
     return std::count_if(m.positions.begin(), m.positions.end(), [](Vec3 p) { return p.x < 0.1; });
   };

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A small corpus of all kinds of meshes: what is good on scans alone is not good.
+// A small corpus of all kinds of meshes: to be good on scans alone is not enough.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t k_triangles = 40'000;
 
-/// The greater of both directions, as a fraction of the diagonal.
+/// The greater RMS of both directions, as a fraction of the diagonal.
 double error_of(const Mesh& original, const Mesh& result) {
   DistanceOptions options;
   options.samples = 50'000;
@@ -30,9 +30,9 @@ double error_of(const Mesh& original, const Mesh& result) {
          box.diagonal();
 }
 
-/// How much of a shape is kept, and what that may cost: RMS in millionths of the diagonal, about
-/// 1.3 times what it was when the row was written. That was about what the best of CGAL, VTK,
-/// OpenMesh and meshoptimizer reached, or less.
+/// The ratio to which a shape is reduced, and the highest RMS allowed, in millionths of the
+/// diagonal: about 1.3 times the RMS when the row was written. That RMS was about as low as the
+/// best of CGAL, VTK, OpenMesh and meshoptimizer, or lower.
 struct Row {
   std::string_view shape;
   double ratio;

@@ -196,7 +196,7 @@ TEST_CASE("neighbours of opposite orientation are turned") {
 
 TEST_CASE("triangles of no area neither crash nor spread") {
   Mesh mesh = wavy_grid(30, 30);
-  // Vertices moved onto a neighbour, and a row drawn into one line.
+  // Vertices moved onto a neighbour, and a row moved onto the row before.
   for (std::uint32_t v = 100; v < 800; v += 37) mesh.positions[v] = mesh.positions[v + 1];
   for (std::uint32_t v = 403; v < 433; ++v) {
     mesh.positions[v] = mesh.positions[v - 31] + Vec3{0, 0, 0};
@@ -287,7 +287,7 @@ Mesh random_surface(Random& random, bool closed) {
   return mesh;
 }
 
-/// What holds whatever may become of the topology, and what holds if it is kept.
+/// Checks what holds in any topology mode, and what holds if the topology is kept.
 void check_result(const Simplifier& simplifier, const Validity& before, TopologyMode topology) {
   const Validity after = check(simplifier.mesh());
   CHECK(after.bad_index + after.degenerate + after.duplicate == 0);

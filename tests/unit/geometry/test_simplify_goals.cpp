@@ -15,7 +15,7 @@
 using namespace meshfarm;
 
 TEST_CASE("a short last step does not give up a topology that was kept so far") {
-  // To remove a speck is always cheaper than the sphere's next collapse.
+  // Removing a speck is always cheaper than the sphere's next collapse.
   constexpr int k_specks = 60;
   Mesh mesh = test::icosphere(4);
   for (int i = 0; i < k_specks; ++i) {
@@ -31,7 +31,7 @@ TEST_CASE("a short last step does not give up a topology that was kept so far") 
     CHECK_FALSE(simplifier.simplifies_topology());
     CHECK(measure_topology(simplifier.mesh()).components == k_specks + 1);
   }
-  // Where nothing else is left they go.
+  // They go where nothing else is left.
   simplifier.reduce({.triangles = 100});
   CHECK(simplifier.triangles() == 100);
   CHECK(simplifier.simplifies_topology());
@@ -48,7 +48,7 @@ TEST_CASE("what is kept on the way is the mesh as it was, and changes no result"
   CHECK(keeping.mesh().positions == plain.mesh().positions);
   CHECK(keeping.mesh().triangles == plain.mesh().triangles);
   const std::vector<Mesh> kept = keeping.take_kept();
-  REQUIRE(kept.size() == 2);  // those before are too far away by now
+  REQUIRE(kept.size() == 2);  // the earlier ones are too far away by now
   CHECK(kept[0].triangles.size() == 624);
   CHECK(kept[1].triangles.size() == 500);
   CHECK(measure_topology(kept[1]).euler == 0);
@@ -66,7 +66,7 @@ TEST_CASE("a cost that leaves little to do is no reason to go on in order") {
   smooth.reduce({.triangles = 1000, .max_cost = 4 * reached});
   CHECK(left() < 0.9 * before);
   CHECK_FALSE(smooth.is_slowed_by_topology());
-  smooth.reduce({.triangles = 1000});  // the last of it in order
+  smooth.reduce({.triangles = 1000});  // the last collapses go in order
   CHECK(smooth.triangles() == 1000);
   CHECK(smooth.is_slowed_by_topology());
 }
@@ -172,7 +172,7 @@ TEST_CASE("a large piece does not give up a corner for the last two triangles") 
 
 namespace {
 
-/// A cube of so many cells a side, with all walls between them.
+/// A cube with `side` cells per side, and all walls between them.
 Mesh cells(std::uint32_t side) {
   Mesh mesh;
   const std::uint32_t row = side + 1;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Sheets with rows of square holes: corners stay as long as anything that is nearly flat can go,
-// and what holes go is no more than is fair.
+// Sheets with rows of square holes: corners stay as long as anything nearly flat can go, and no
+// more holes are closed than is fair.
 #include <cmath>
 #include <functional>
 #include <map>
@@ -20,10 +20,10 @@ using namespace meshfarm::simplify_test;
 
 namespace {
 
-/// Squares of the whole numbers' lattice, which share their corners; and those of the holes.
+/// Squares on the integer lattice that share their corners, and the corners of the holes.
 class Sheets {
  public:
-  /// A square bay of six by six squares, of which the middle four may be a hole.
+  /// A square bay of six by six squares, whose middle four may be a hole.
   void add_bay(const std::function<Vec3(int, int)>& at, bool has_hole = true) {
     constexpr int k_squares = 6;
     for (int i = 0; i < k_squares; ++i) {
@@ -66,7 +66,7 @@ class Sheets {
   std::map<std::tuple<double, double, double>, std::uint32_t> numbers_;
 };
 
-/// How many of the corners are no vertices of the result.
+/// The number of corners that are not vertices of the result.
 std::size_t lost_corners(const Sheets& sheets, const Mesh& mesh, std::uint64_t triangles) {
   Simplifier simplifier(mesh, {});
   simplifier.reduce({triangles});
@@ -83,7 +83,7 @@ std::size_t lost_corners(const Sheets& sheets, const Mesh& mesh, std::uint64_t t
   return lost;
 }
 
-/// A plate of bays x bays bays, as thick as a square is wide, each with a hole through it.
+/// A plate of bays x bays bays, as thick as a square is wide, with a hole through each bay.
 Mesh plate(int bays) {
   Sheets sheets;
   const auto add_walls_round = [&](int x, int y, int size) {
@@ -110,7 +110,7 @@ Mesh plate(int bays) {
   return sheets.mesh();
 }
 
-/// RMS, the greater of both directions.
+/// The greater RMS of both directions.
 double error_of(const Mesh& mesh, std::uint64_t triangles, TopologyMode topology) {
   SimplifyOptions options;
   options.lines.topology = topology;
@@ -138,7 +138,7 @@ TEST_CASE("what is flat between windows in rows goes before their corners") {
   const Mesh mesh = sheets.bent([](Vec3 p) {
     return Vec3{p.x, p.y, 6 * (0.004 * p.x * p.x / 36 + 0.02 * std::sin(p.y / 6))};
   });
-  // 6.6 a bay, of which the corners alone need 5.9.
+  // 6.6 triangles per bay; the corners alone need 5.9.
   CHECK(lost_corners(sheets, mesh, 2640) == 0);
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("walls on a floor keep the corners of their holes while their lines ma
 
 TEST_CASE("holes of a plate are closed where corners that cost the same would be worse") {
   const Mesh mesh = plate(12);
-  // 20 a hole keep all.
+  // 20 triangles per hole would keep all holes.
   for (const std::uint64_t triangles : {2800U, 2500U, 2000U}) {
     CAPTURE(triangles);
     const double simplified = error_of(mesh, triangles, TopologyMode::simplify);

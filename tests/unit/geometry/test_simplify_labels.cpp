@@ -101,7 +101,7 @@ TEST_CASE("lines between labels stay where they are") {
       for (std::size_t i = 0; i < result.triangles.size(); ++i) {
         CHECK(octant(centre_of(result, result.triangles[i])) == result.columns.labels[i]);
       }
-      // Three great circles, in which chords take the place of arcs.
+      // Three great circles, with chords instead of arcs.
       CHECK(length_of(lines_of(result)) == doctest::Approx(6 * std::numbers::pi).epsilon(0.05));
       for (const auto& [a, b] : lines_of(result)) {
         const Vec3 m = (a + b) * 0.5;
@@ -138,7 +138,7 @@ TEST_CASE("a round region neither grows nor shrinks as its line becomes coarse")
   }
 }
 
-/// The square mean of how far the triangles of a sphere of radius 1 are inside it.
+/// The mean square of how far the triangles of a sphere of radius 1 lie inside it.
 double sag_of(const Mesh& mesh) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles) {
@@ -180,7 +180,7 @@ TEST_CASE("labels that are all the same change nothing") {
 TEST_CASE("labels go with their triangles where these are dropped") {
   Mesh mesh = labelled(wide_torus(40, 20), [](Vec3 p) { return p.z > 0 ? 1U : 0U; });
   const double before = areas_of(mesh).at(1);
-  // A degenerate one in front, one twice, and a piece that is dropped below.
+  // A degenerate triangle in front, a duplicate, and a piece that is dropped further down.
   mesh.triangles.insert(mesh.triangles.begin(), {{0, 0, 1}, mesh.triangles[5]});
   mesh.columns.labels.insert(mesh.columns.labels.begin(), {9, mesh.columns.labels[5]});
   const Mesh result = simplified_labelled(mesh, 1500);

@@ -30,7 +30,7 @@ double farthest_from_unit_sphere(const Mesh& mesh, Vec3 centre) {
   return farthest;
 }
 
-/// A closed cylinder along z, of the radius 0.04 and the height 1.2.
+/// A closed cylinder along z, of radius 0.04 and height 1.2.
 Mesh pin(std::uint32_t sides, std::uint32_t rings) {
   Mesh mesh = grid(sides, rings, [](double, double) { return 0.0; });
   for (Vec3& p : mesh.positions) {
@@ -52,8 +52,8 @@ Mesh pin(std::uint32_t sides, std::uint32_t rings) {
   return mesh;
 }
 
-/// A plate of squares of side 1, as thick as 0.1, with a hole of 12 sides and the radius 0.05
-/// through the middle of each.
+/// A plate of squares of side 1, 0.1 thick, with a hole of 12 sides and radius 0.05 through the
+/// middle of each.
 Mesh drilled_plate(std::uint32_t columns, std::uint32_t rows) {
   constexpr std::uint32_t k_sides = 12;
   constexpr double k_radius = 0.05;
@@ -178,7 +178,7 @@ TEST_CASE("one triangle too many, which cannot go, is no end of what a cost allo
   Mesh mesh = sphere(4);
   mesh.triangles.pop_back();  // a hole of three edges
   Simplifier simplifier(mesh, {.lines = {.topology = TopologyMode::keep}});
-  simplifier.reduce({900});  // too few for one fewer to be as good
+  simplifier.reduce({900});  // so few that one fewer would not be as good
   REQUIRE(simplifier.triangles() == 901);
   simplifier.reduce({0, 4 * simplifier.pass_cost()});
   CHECK(simplifier.triangles() < 675);
@@ -207,7 +207,7 @@ TEST_CASE("costs that rise in small steps lead to about the same as one") {
     if (steps.triangles() == before) ++still;
     CHECK(steps.max_cost() <= std::max(first, cost) * 1.001);
   }
-  CHECK(still > 10);  // below what was paid there is little to do
+  CHECK(still > 10);  // below the cost already paid there is little to do
   steps.reduce({2000});
   Simplifier at_once(noisy, {});
   at_once.reduce({2000});
@@ -251,7 +251,7 @@ TEST_CASE("tiny and huge meshes are treated alike") {
 TEST_CASE("float32 results survive being written as float32") {
   SimplifyOptions options;
   options.positions = PositionType::float32;
-  // About 16 steps of a float across a triangle.
+  // A triangle is about 16 float steps wide.
   Mesh mesh = put_at(sphere(4), {50000, 50000, 50000});
   for (Vec3& p : mesh.positions) p = rounded(p, PositionType::float32);
   const std::uint64_t flat_before = check(mesh).no_area;
@@ -312,7 +312,7 @@ TEST_CASE("a thin spike does not draw back before wavy ground is coarse") {
 
 namespace {
 
-/// A pillar of so many sides, each two needles, radius 1. Strips of triangles close the ends.
+/// A pillar of radius 1, each of its sides two needles. Strips of triangles close the ends.
 Mesh pillar(std::uint32_t sides, double height) {
   Mesh mesh;
   for (const double z : {0.0, height}) {
@@ -403,7 +403,7 @@ TEST_CASE("straight edges go before what is round, however long they are") {
   constexpr std::uint32_t k_sides = 30;
   Mesh pins;
   for (std::uint32_t i = 0; i < 20; ++i) append(pins, pin(k_sides, 40), {0.5 * i, 0, 0});
-  for (Vec3& p : pins.positions) {  // in no direction of an axis, as floats
+  for (Vec3& p : pins.positions) {  // along no axis, as floats
     const Vec3 turned{0.6 * p.x + 0.8 * p.y, 0.48 * p.y - 0.64 * p.x + 0.6 * p.z,
                       0.36 * p.y - 0.48 * p.x - 0.8 * p.z};
     p = rounded(turned, PositionType::float32);
@@ -415,7 +415,7 @@ TEST_CASE("straight edges go before what is round, however long they are") {
 }
 
 TEST_CASE("small holes through a plate close before it loses a corner") {
-  // To close one of three sides turns its walls by more than 60 degrees.
+  // Closing a hole of three sides turns its walls by more than 60 degrees.
   const Mesh plate = drilled_plate(5, 4);
   REQUIRE(check(plate).euler == 2 - 2 * 20);
   REQUIRE(is_clean(plate));

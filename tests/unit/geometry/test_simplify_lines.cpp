@@ -32,7 +32,7 @@ int faces_at(const std::array<int, 3>& p) {
       std::count_if(p.begin(), p.end(), [](int c) { return c == 0 || c == k_units; }));
 }
 
-/// A cube of k_units units a side, rough on its faces but not on its edges.
+/// A cube with k_units units per side, rough on its faces but not on its edges.
 Mesh rough_cube() {
   Mesh mesh;
   std::map<std::array<int, 3>, std::uint32_t> index;
@@ -76,7 +76,7 @@ bool is_cube_corner(Vec3 p) {
   return at_end(p.x) && at_end(p.y) && at_end(p.z);
 }
 
-/// The length of the result's edges that are as near as that to the cube's edges.
+/// The length of the result's edges that are nearer than `near` to the cube's edges.
 double length_on_cube_edges(const Mesh& mesh, double near) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles) {
@@ -163,7 +163,7 @@ TEST_CASE("where a crease ends its last vertex stays") {
   const Mesh fold = fading_fold();
   const Mesh result = simplified(fold, {.crease_angle = 60}, 120);
   CHECK(is_clean(result));
-  // Sharper than 60 degrees as long as 2 (1 - x) > tan(30 degrees); the flags follow it further.
+  // Sharper than 60 degrees where 2 (1 - x) > tan(30 degrees); the flags follow it further.
   const auto is_kept = [](Vec3 p) { return p.y == 0.5 && p.x > 0.6 && p.x < 0.9; };
   CHECK(std::any_of(result.positions.begin(), result.positions.end(), is_kept));
   for (const Vec3 p : result.positions) {

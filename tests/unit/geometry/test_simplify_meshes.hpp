@@ -51,7 +51,7 @@ inline Mesh wavy_grid(std::uint32_t columns, std::uint32_t rows) {
               [](double x, double y) { return 0.05 * std::sin(9 * x) * std::cos(7 * y + x); });
 }
 
-/// A torus of the outer radius 2 + `thickness`.
+/// A torus of outer radius 2 + `thickness`.
 inline Mesh ring_of_tube(std::uint32_t around, std::uint32_t across, double thickness) {
   Mesh mesh;
   const double turn = 2 * std::numbers::pi;
@@ -130,7 +130,7 @@ inline double area(const Mesh& mesh) {
   return sum;
 }
 
-/// What must hold for any result, counted by sets and maps: shares no code with the project.
+/// What must hold for any result, counted with sets and maps; shares no code with the project.
 struct Validity {
   std::uint64_t bad_index = 0;
   std::uint64_t degenerate = 0;
@@ -187,13 +187,13 @@ inline Validity check(const Mesh& mesh) {
   return v;
 }
 
-/// Nothing broken, nothing unused.
+/// Whether nothing is broken or unused.
 inline bool is_clean(const Mesh& mesh) {
   const Validity v = check(mesh);
   return v.bad_index + v.degenerate + v.duplicate + v.no_area + v.unused + v.crowded_edges == 0;
 }
 
-/// Small pseudo-random numbers, the same everywhere.
+/// A small pseudo-random generator, the same everywhere.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed * 2654435761U + 88172645463325252U) {}

@@ -137,7 +137,7 @@ TEST_CASE("a limit that is estimated lets its share pass") {
 }
 
 TEST_CASE("flat edges come before folds, and short ones before long ones") {
-  // Flat but for a step along x = 0.5; columns to the left of it are half as wide.
+  // Flat except for a step along x = 0.5; the columns left of it are half as wide.
   Mesh mesh = grid(20, 20, [](double x, double) { return x > 0.5 ? 0.3 : 0.0; });
   for (Vec3& p : mesh.positions) p.x = p.x < 0.5 ? p.x / 2 : p.x;
   CollapseBench bench(mesh);
@@ -157,7 +157,7 @@ TEST_CASE("flat edges come before folds, and short ones before long ones") {
 }
 
 TEST_CASE("once it is refined, what is flat but for noise is told apart") {
-  // Noise of 2e-4 of an edge on the right, a tenth of it on the left.
+  // Noise of 2e-4 of an edge length on the right, and a tenth of that on the left.
   Random random(5);
   Mesh mesh = flat_grid(40, 40);
   for (Vec3& p : mesh.positions) p.z = (p.x > 0.5 ? 5e-6 : 5e-7) * random.unit();
@@ -190,7 +190,7 @@ TEST_CASE("once it is refined, what is flat but for noise is told apart") {
       return e.a == each.a && e.b == each.b && e.key == each.key;
     }));
   }
-  ranking.begin_pass(input);  // is as rough as before
+  ranking.begin_pass(input);  // is as coarse as before
   CHECK(right_ones_of_first() > 300);
 }
 
@@ -222,7 +222,7 @@ TEST_CASE("border vertices are ranked along the border and from inside, not acro
     const Vec3& p = bench.mesh.positions[e.a];
     const Vec3& q = bench.mesh.positions[e.b];
     CHECK((p.x == q.x || p.y == q.y));            // no diagonal
-    CHECK((p.y == q.y || p.x == 0 || p.x == 1));  // nor from side to side, but at the ends
+    CHECK((p.y == q.y || p.x == 0 || p.x == 1));  // nor across, except at the ends
   }
 }
 

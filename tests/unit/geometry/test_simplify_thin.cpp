@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Surfaces that are much narrower than they are long, and than their triangles: ribbons and pins.
+// Surfaces much narrower than their length and than their triangles: ribbons and pins.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint32_t k_long = 1000;
 
-/// Two squares wide: `width` in all, `k_long` long, and along it a wave so high.
+/// A ribbon two squares, that is `width`, wide and `k_long` long, with waves of that height.
 Mesh ribbon(double width, double height) {
   Mesh mesh = grid(2, k_long, [&](double, double along) {
     return height * std::sin(4 * std::numbers::pi * along);
@@ -29,7 +29,7 @@ Mesh ribbon(double width, double height) {
   return mesh;
 }
 
-/// Makes a tube, open at both ends, of rings of so many vertices each.
+/// Joins rings of `sides` vertices each to a tube, open at both ends.
 void join_rings(Mesh& mesh, std::uint32_t sides) {
   for (std::uint32_t first = 0; first + sides < mesh.positions.size(); first += sides) {
     for (std::uint32_t side = 0; side < sides; ++side) {
@@ -41,7 +41,7 @@ void join_rings(Mesh& mesh, std::uint32_t sides) {
   }
 }
 
-/// Six sides, open at both ends, straight.
+/// A straight tube of six sides, open at both ends.
 Mesh pin(double radius) {
   Mesh mesh;
   for (std::uint32_t ring = 0; ring <= k_long; ++ring) {
@@ -55,7 +55,7 @@ Mesh pin(double radius) {
   return mesh;
 }
 
-/// The greater RMS of both directions over the length, with so many triangles left.
+/// The greater RMS of both directions, divided by the length, with `triangles` triangles left.
 double error_at(const Mesh& mesh, std::uint64_t triangles) {
   Simplifier simplifier(mesh, {});
   simplifier.reduce({triangles});
@@ -118,7 +118,8 @@ TEST_CASE("a straight pin keeps its length, however thin it is") {
 
 namespace {
 
-/// Of four sides, open at both ends: it becomes thinner along a bend, and its rings wider apart.
+/// A tube of four sides, open at both ends: along a bend it gets thinner, and its rings get
+/// farther apart.
 Mesh strand(double bend) {
   constexpr std::uint32_t k_rings = 26;
   Mesh mesh;
@@ -168,7 +169,7 @@ TEST_CASE("a stretched surface is no ribbon: none of its triangles turns over") 
 
 namespace {
 
-/// With the diagonals of top and bottom across each other.
+/// The box with the diagonals of top and bottom across each other.
 Mesh crossed(Mesh box) {
   box.triangles[2] = {4, 5, 6};
   box.triangles[3] = {5, 7, 6};
@@ -218,7 +219,7 @@ TEST_CASE("plates stay closed with the topology, and where nothing may cross") {
 
 TEST_CASE("what is left of a closed plate stands for both of its sides") {
   Mesh mesh = test::box({2, 2, 0.01});
-  // Larger than one side, not than both.
+  // Larger than one side of the plate, but not than both.
   append(mesh, Mesh{{{0, 0, 0}, {2.2, 0, 0}, {2.2, 2.2, 0}, {0, 2.2, 0}}, {{0, 1, 2}, {0, 2, 3}}},
          {0, 0, 50});
   Simplifier simplifier(mesh, {.lines = {.topology = TopologyMode::simplify}});

@@ -34,7 +34,7 @@ double diagonal(const Mesh& mesh) {
   return box.diagonal();
 }
 
-/// The greater of both directions.
+/// The greater values of both directions.
 Distance topology_error(const Mesh& original, const Mesh& result) {
   DistanceOptions options;
   options.samples = 50'000;
@@ -52,7 +52,7 @@ Mesh scaled(Mesh mesh, double factor) {
 
 using Cell = std::array<std::uint32_t, 3>;
 
-/// The surface of unit cubes; of edges where two meet, and of corners, too. No cell is 0.
+/// The surface of unit cubes, which may touch at edges and at corners. No cell is 0.
 template <typename IsSolid>
 Mesh surface_of_cells(const Cell& last, const IsSolid& is_solid) {
   Mesh mesh;
@@ -93,7 +93,7 @@ Mesh surface_of_cells(const Cell& last, const IsSolid& is_solid) {
   return mesh;
 }
 
-/// A bent plate with holes x holes square holes: closed, as many handles.
+/// A bent plate with holes x holes square holes: closed, one handle per hole.
 ///
 ///     +---------+
 ///     | +-+ +-+ |
@@ -102,7 +102,7 @@ Mesh surface_of_cells(const Cell& last, const IsSolid& is_solid) {
 Mesh perforated_plate(std::uint32_t holes) {
   constexpr std::uint32_t k_fine = 3;  // cells across a hole
   const std::uint32_t size = (2 * holes + 1) * k_fine;
-  // From 1 on, so that there is a cell beside each.
+  // Cells count from 1, so that each has a cell beside it.
   const auto is_solid = [&](const Cell& c) {
     if (std::min({c[0], c[1], c[2]}) == 0 || std::max(c[0], c[1]) > size || c[2] > 2) return false;
     return (c[0] - 1) / k_fine % 2 == 0 || (c[1] - 1) / k_fine % 2 == 0;
@@ -124,7 +124,7 @@ Mesh plate() {
 Mesh dumbbell() {
   Mesh mesh = sphere(4);
   append(mesh, sphere(4), {4, 0, 0});
-  // The triangles round the vertices that face each other make way for the tube.
+  // The triangles round the two vertices that face each other make way for the tube.
   const std::uint32_t half = static_cast<std::uint32_t>(mesh.positions.size() / 2);
   const std::uint32_t left = 0;
   const std::uint32_t right = half + 1;
@@ -263,7 +263,7 @@ TEST_CASE("topology: automatic keeps it where the goal is easy, and only there")
 }
 
 TEST_CASE("cells that touch along edges stay closed however they are joined at their corners") {
-  // At one end of the edge between the first two, others fill what is empty.
+  // The first two touch along an edge; at one end of it other cells fill the gap.
   const std::vector<Cell> five{{1, 1, 1}, {2, 2, 1}, {1, 1, 2}, {1, 2, 2}, {2, 2, 2}};
   const auto is_one = [&](const Cell& c) {
     return std::find(five.begin(), five.end(), c) != five.end();
@@ -335,7 +335,7 @@ TEST_CASE("topology: of two specks that of which the rest is near goes first") {
     const Vec3 far{0, 3, 0};
     append(mesh, speck, near_first ? near : far);
     append(mesh, speck, near_first ? far : near);
-    // A result that has room for one of them.
+    // A result with room for one of them.
     const Simplifier result = reduced_topology(mesh, 60, TopologyMode::simplify);
     CHECK(result.triangles() == 60);
     const auto left_round = [&](Vec3 place) {
@@ -455,7 +455,7 @@ TEST_CASE("a wall stays on its floor, whichever comes first") {
     CAPTURE(wall_first);
     Mesh mesh = wavy_grid(k_size, k_size);
     const std::size_t of_floor = mesh.triangles.size();
-    // Not up to the floor's borders: all round the wall's ends it is closed.
+    // The wall does not reach the floor's borders: round its ends the floor is closed.
     const std::uint32_t base = k_size / 2 * (k_size + 1);
     const auto top = static_cast<std::uint32_t>(mesh.positions.size());
     constexpr std::uint32_t k_from = 8;

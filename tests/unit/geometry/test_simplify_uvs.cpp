@@ -98,7 +98,7 @@ TEST_CASE("charts keep their corners and the places of their seams on the pictur
       CHECK(strange_ends(flat, result) == 0);
       CHECK(seams_of(result).size() >= 36);
       if (target > 1) CHECK(result.triangles.size() <= target);
-      // Two triangles a chart, but one at each corner of the square, which nothing holds.
+      // Two triangles per chart, except one at each corner of the square, which nothing holds.
       if (target == 1) CHECK(result.triangles.size() == 28);
     }
   }
@@ -262,7 +262,7 @@ TEST_CASE("a label that all triangles have makes no seam heavier") {
 TEST_CASE("locked vertices keep all of their texture coordinates") {
   const Mesh mesh = chart_grid(shaken_grid(48, 0.002), 3);
   SimplifyOptions options;
-  options.locked_vertices = 200;  // four rows and a part of one
+  options.locked_vertices = 200;  // four rows and part of a fifth
   const Mesh result = reduced(mesh, 700, options);
   CHECK(result.triangles.size() <= 700);
   const auto wedges_of = [](const Mesh& of) {
@@ -302,7 +302,7 @@ TEST_CASE("the same texture coordinates, the same bytes") {
   const Mesh two = reduced(mesh, 1500);
   CHECK(same_bytes(one, two));
   CHECK(one.columns.uvs == two.columns.uvs);
-  // In steps the same lines hold.
+  // The same lines hold if it is reduced in steps.
   Simplifier simplifier(mesh, {});
   for (const std::uint64_t target : {20000, 6000, 1500}) {
     simplifier.reduce({.triangles = target, .last_triangles = 1500, .keep_at = {5000, 3000}});

@@ -26,7 +26,7 @@ std::vector<std::array<Vec3, 3>> corners_of(const Mesh& mesh) {
   return corners;
 }
 
-/// A ball squeezed and moved.
+/// A ball, squeezed and moved.
 Mesh pebble(int levels, Vec3 size, Vec3 at) {
   Mesh ball = test::icosphere(levels);
   for (Vec3& p : ball.positions) p = Vec3{p.x * size.x, p.y * size.y, p.z * size.z} + at;
@@ -40,7 +40,8 @@ void check_equal(const SolidMoments& a, const SolidMoments& b) {
   }
 }
 
-/// Of pebbles whose middles are one apart in a row: triangles that do not face away from theirs.
+/// The number of triangles that do not face away from the middle of their pebble. The middles
+/// are 1 apart in a row.
 std::size_t facing_wrong(const Mesh& mesh) {
   std::size_t wrong = 0;
   for (const auto& [first, second, third] : corners_of(mesh)) {

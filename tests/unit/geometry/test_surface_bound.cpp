@@ -26,7 +26,7 @@ Mesh simplified_to_bound(const Mesh& mesh, double distance, SimplifyOptions opti
   return simplifier.mesh();
 }
 
-/// In both directions, vertices as well.
+/// The greatest distance in both directions, vertices included.
 double farthest(const Mesh& x, const Mesh& y) {
   const auto from_to = [](const Mesh& from, const Mesh& to) {
     return std::max(measure_distance(from, to, {200'000, 1}).max,
@@ -53,11 +53,11 @@ Mesh sheet_with_a_slot(double width) {
       return p.x >= 30 && p.x <= 30 + width && p.y >= 30;
     });
   });
-  // Without the vertices that no triangle has.
+  // Drops the vertices that no triangle uses.
   return Simplifier(mesh, {}).mesh();
 }
 
-/// Terraces: all is flat, but a triangle from one to the next is not.
+/// Terraces: all is flat, except a triangle from one to the next.
 Mesh terraces() {
   Mesh mesh = test::grid(64, 64);
   for (Vec3& p : mesh.positions) {
@@ -67,7 +67,7 @@ Mesh terraces() {
   return mesh;
 }
 
-/// Rough, with sides many times as long as the bounds that are tried.
+/// Rough, with sides many times longer than the bounds that are tried.
 Mesh jagged_ridges() {
   Mesh mesh = test::grid(60, 60);
   for (Vec3& p : mesh.positions) {

@@ -37,7 +37,7 @@ Mesh cone(std::uint32_t count, double height) {
   return mesh;
 }
 
-/// A sheet of 8 x 5 squares, bent by so many degrees along x = 4.
+/// A sheet of 8 x 5 squares, bent by `degrees` along x = 4.
 Mesh bent(double degrees) {
   Mesh mesh = test::grid(8, 5);
   const double turn = degrees * k_pi / 180;
@@ -81,7 +81,7 @@ TEST_CASE("surface measures: a box, wherever it is and however it is turned") {
   CHECK(shape(open).area == doctest::Approx(16));
   CHECK(edges(open).border == doctest::Approx(10));
   CHECK(edges(open).feature == doctest::Approx(14));
-  // The same as a soup whose triangles face any way.
+  // The same for a soup whose triangles face any way.
   Mesh soup;
   for (const auto& [a, b, c] : open.triangles) {
     const auto first = static_cast<std::uint32_t>(soup.positions.size());
@@ -99,7 +99,7 @@ TEST_CASE("surface measures: a sphere and a torus by their formulas") {
   CHECK(shape(sphere).volume == doctest::Approx(4 * k_pi / 3).epsilon(0.003));
   CHECK(edges(sphere).feature == 0);
   CHECK(edges(sphere).border == 0);
-  // Twenty equal sides: 41.8 degrees lie between two of them.
+  // Twenty equal faces, with 41.8 degrees between two of them.
   const Mesh icosahedron = test::icosphere(0);
   const double side = length(icosahedron.positions[0] - icosahedron.positions[11]);
   CHECK(edges(icosahedron).feature == doctest::Approx(30 * side));
@@ -131,11 +131,11 @@ TEST_CASE("surface measures: the angles of a cone") {
   CHECK(std::abs(shape(mesh).smallest_angle_p1 - tip) <= 0.0005);
   CHECK(shape(mesh).share_below_5 == 1);
   CHECK(edges(mesh).border == doctest::Approx(2 * count * std::sin(k_pi / count)));
-  // Beside nine times as many of 45 degrees.
+  // Beside nine times as many triangles of 45 degrees.
   test::append(mesh, test::grid(45, 9));
   CHECK(shape(mesh).share_below_5 == doctest::Approx(0.1));
   CHECK(std::abs(shape(mesh).smallest_angle_p1 - tip) <= 0.0005);
-  // One in a hundred, and then one less.
+  // One triangle in a hundred, and then one fewer.
   Mesh few = test::grid(33, 3);
   test::append(few, cone(count, height));
   few.triangles.resize(200);

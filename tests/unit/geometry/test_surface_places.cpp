@@ -32,7 +32,7 @@ Vec3 point_of(const Mesh& mesh, const SurfacePlace& place) {
          mesh.positions[c] * place.shares[2];
 }
 
-/// The squared distance to the nearest of the triangles that face this way, of all.
+/// The squared distance to the nearest of all triangles that face this way.
 double least_squared(const Mesh& mesh, Vec3 p, Vec3 normal) {
   double least = HUGE_VAL;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -44,7 +44,7 @@ double least_squared(const Mesh& mesh, Vec3 p, Vec3 normal) {
   return least;
 }
 
-/// Two sheets, one above the other, the upper one seen from above and the lower one from below.
+/// Two sheets, one above the other: the upper one faces up, the lower one down.
 Mesh wall(double thickness) {
   Mesh mesh = test::grid(10, 10);
   Mesh below = test::grid(10, 10);

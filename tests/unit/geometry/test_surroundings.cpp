@@ -16,7 +16,7 @@
 namespace meshfarm::test {
 namespace {
 
-/// Triangles that share nothing, here and there.
+/// Scattered triangles that share nothing.
 Mesh lonely_triangles(std::uint32_t count) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> anywhere(0, 10);
@@ -30,7 +30,7 @@ Mesh lonely_triangles(std::uint32_t count) {
   return mesh;
 }
 
-/// So many of them, none merged yet.
+/// `count` of them, none merged yet.
 struct LonelyPieces {
   explicit LonelyPieces(std::uint32_t count)
       : mesh(lonely_triangles(count)), target(mesh.positions.size()) {
@@ -40,7 +40,7 @@ struct LonelyPieces {
   void keep(const std::vector<Triangle>& left) {
     adjacency.build(left, mesh.positions.size(), mesh.columns);
   }
-  /// From the first piece.
+  /// The squared distance found from `from` for the first piece.
   double found_from(Vec3 from) {
     const std::vector<std::uint32_t> without = {0, 1, 2};
     return surroundings.squared_distance({mesh.positions, target, &adjacency}, {from, {}, without});
@@ -111,7 +111,7 @@ TEST_CASE("what is long is as far as its points are, in the mean") {
   Adjacency adjacency;
   adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
   const std::vector<std::uint32_t> without = {0, 1, 2};
-  const std::vector<Vec3> points = {{0, 0, 0}, {7, 0, 0}};  // 2 from the other, and (6, 0, -2)
+  const std::vector<Vec3> points = {{0, 0, 0}, {7, 0, 0}};  // 2 and |(6, 0, -2)| from the other
   Surroundings surroundings;
   const ShrinkingMesh shrinking{mesh.positions, target, &adjacency};
   CHECK(surroundings.squared_distance(shrinking, {{3, 0, 0}, points, without}) ==
@@ -145,7 +145,7 @@ TEST_CASE("what a vertex has become stands where the vertex was") {
   CHECK(found() == 0);
   pieces.target[5] = 3;
   CHECK(found() == 0);
-  // Its piece is gone: the same is found however often it is asked for.
+  // Its piece is gone: the same is found each time.
   pieces.keep({pieces.mesh.triangles[0], pieces.mesh.triangles[2]});
   pieces.surroundings.change();
   const double gone = found();

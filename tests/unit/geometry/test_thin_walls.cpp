@@ -25,7 +25,7 @@ std::size_t thin_vertices(const Mesh& mesh, double reach) {
   return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), k_thin));
 }
 
-/// A sheet and, so far above it, one that faces the other way or the same.
+/// A sheet, and `apart` above it another that faces the other way or the same way.
 Mesh two_sheets(double apart, bool is_turned) {
   Mesh mesh = test::grid(20, 20);
   const Mesh first = mesh;

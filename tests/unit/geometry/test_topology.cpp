@@ -35,7 +35,7 @@ void check_same(const Topology& a, const Topology& b) {
   CHECK(a.euler == b.euler);
 }
 
-/// The counts as their words say, with maps and sets. No area is looked at.
+/// The counts by their definitions, with maps and sets. Areas are ignored.
 Topology measure_slowly(const Mesh& mesh) {
   Topology topology;
   topology.vertices = mesh.positions.size();

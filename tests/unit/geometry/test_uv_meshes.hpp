@@ -20,7 +20,7 @@
 
 namespace meshfarm::simplify_test {
 
-/// uv_at(position, centre of the triangle).
+/// The mesh with uv_at(position, centre of the triangle) at each corner.
 template <typename UvAt>
 Mesh mapped(Mesh mesh, const UvAt& uv_at) {
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -48,7 +48,7 @@ inline std::size_t count_turned(const Mesh& mesh) {
                     [](const CornerUvs& t) { return area_of(t) <= 0; }));
 }
 
-/// Charts of a square cut into so many on a side, each somewhere else on the picture.
+/// A square cut into side x side charts, each somewhere else on the picture.
 inline Mesh chart_grid(Mesh mesh, int side) {
   return mapped(std::move(mesh), [side](Vec3 p, Vec3 centre) {
     const double column = std::floor(centre.x * side);
@@ -96,7 +96,7 @@ inline Mesh unrolled_tube(std::uint32_t around, std::uint32_t along) {
       if (v % width == around) v -= around;
     }
   }
-  // What is used no more goes.
+  // Drops the vertices that are no longer used.
   Mesh packed{{}, std::move(mesh.triangles), {}, std::move(mesh.columns)};
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
     if (v % width != around) packed.positions.push_back(mesh.positions[v]);
@@ -107,7 +107,7 @@ inline Mesh unrolled_tube(std::uint32_t around, std::uint32_t along) {
   return packed;
 }
 
-/// One chart, opened along a slit from the side to the middle of the square.
+/// One chart, open along a slit from the side to the middle of the square.
 inline Mesh dart(Mesh mesh) {
   return mapped(std::move(mesh), [](Vec3 p, Vec3 centre) {
     const double open = centre.y > 0.5 && p.x < 0.5 ? 0.2 * (0.5 - p.x) : 0;
@@ -126,7 +126,8 @@ inline Place place_of(Vec3 p) {
   return {p.x, p.y, p.z};
 }
 
-/// What meets along an edge: from its lower place, on both sides what its ends have.
+/// An edge at a seam or border, its lower vertex first; and the texture coordinates of both sides
+/// at each end.
 struct SeamEdge {
   std::array<Place, 2> ends;
   std::array<std::set<Uv>, 2> at_ends;
@@ -159,8 +160,8 @@ inline std::vector<SeamEdge> seams_of(const Mesh& mesh) {
   return seams;
 }
 
-/// How many ends of seams and borders of the result are none of the input's, or have other texture
-/// coordinates.
+/// The number of ends of seams and borders of the result that the input does not have, or with
+/// other texture coordinates.
 inline std::size_t strange_ends(const Mesh& input, const Mesh& result) {
   std::map<Place, std::set<Uv>> known;
   for (const SeamEdge& seam : seams_of(input)) {

@@ -124,7 +124,7 @@ TEST_CASE("the greatest distance is found between samples: at a corner, on a sid
   spiked.positions[20 * 61 + 30].z = 7;
   const DistanceOptions few{.samples = 50};
   CHECK(measure_error({spiked, {}}, {sheet, {}}, {}, few).distance.max == doctest::Approx(7));
-  // The middles of a ring's sides and of its faces are farthest from the round one.
+  // The middles of the coarse ring's sides and faces are farthest from the fine one.
   const Mesh fine = test::torus(600, 300);
   const Mesh coarse = test::torus(24, 12);
   const DistanceBounds bounds = bound_distance(coarse, fine, {.gap = 1e-6});
@@ -184,7 +184,7 @@ Mesh turned_over(Mesh mesh) {
   return mesh;
 }
 
-/// A roof over the sheet of 10 x 10 squares: its ridge at x = 5, both sides so steep.
+/// A roof over the sheet of 10 x 10 squares: its ridge at x = 5, both sides at that slope.
 Mesh roof(double degrees) {
   Mesh mesh = test::grid(10, 10);
   const double slope = std::tan(degrees * std::acos(-1.0) / 180);
@@ -230,7 +230,7 @@ TEST_CASE("normals differ by the slope of a roof, whichever way it is looked at"
 }
 
 TEST_CASE("of triangles that are equally near the one counts that is turned least") {
-  // What lies beyond an edge or a corner of the small one is as near to two or three of its faces.
+  // Points beyond an edge or corner of the small one are equally near to two or three faces.
   const Mesh small = test::octahedron();
   const Mesh large = scaled_by(small, 5);
   CHECK(normals(small, large).rms < 1e-5);

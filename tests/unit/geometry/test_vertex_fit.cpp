@@ -17,7 +17,7 @@ using namespace meshfarm;
 
 namespace {
 
-/// A grid whose heights follow waves.
+/// A grid with wavy heights.
 Mesh waves(std::uint32_t cells) {
   Mesh mesh = test::grid(cells, cells);
   for (Vec3& p : mesh.positions) {
@@ -96,7 +96,7 @@ TEST_CASE("locked vertices, borders and creases stay where that is asked for") {
         100);
   for (std::size_t v = 0; v < locked; ++v) CHECK(after.positions[v] == before.positions[v]);
 
-  // A roof: its ridge is a crease, and what it stands for is higher.
+  // A roof: its ridge is a crease, and the surface it stands for is higher.
   Mesh roof = test::grid(10, 10);
   for (Vec3& p : roof.positions) p.z = 5 - std::abs(p.x - 5);
   Mesh higher = roof;
@@ -148,7 +148,7 @@ TEST_CASE("triangles of no area and any size or place of the mesh do no harm") {
     for (Vec3& p : scaled.positions) p = p * scale;
     Mesh scaled_input = input;
     for (Vec3& p : scaled_input.positions) p = p * scale;
-    // Of a flap that was folded up, and of a needle between two vertices.
+    // As left by a flap that was folded up, and by a needle between two vertices.
     scaled.triangles.push_back({0, 1, 1});
     scaled.triangles.push_back({2, 3, 2});
     CHECK(fit_vertices(scaled, samples_of(scaled_input, 6'000), {.threads = 1}) > 50);
@@ -162,7 +162,7 @@ TEST_CASE("triangles of no area and any size or place of the mesh do no harm") {
 }
 
 TEST_CASE("vertices at one place stay together") {
-  // Two sheets that touch at a corner: each would go its own way.
+  // Two sheets that touch at a corner, where each would go its own way.
   Mesh mesh = waves(10);
   const Mesh other = waves(10);
   const auto count = static_cast<std::uint32_t>(mesh.positions.size());

@@ -14,7 +14,7 @@ Appearance grey(std::uint16_t value) {
   return {value, value, value, 0};
 }
 
-/// Vertices on the x axis, one a number, that look like their numbers.
+/// Vertices on the x axis, one per number, with appearances that tell their numbers.
 Mesh row(const std::vector<std::uint16_t>& numbers, bool appearances) {
   Mesh mesh;
   for (const std::uint16_t n : numbers) {

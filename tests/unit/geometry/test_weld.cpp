@@ -18,7 +18,7 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-/// The same by looking at every pair.
+/// weld() by looking at every pair.
 WeldResult weld_slowly(const std::vector<Vec3>& positions) {
   WeldResult result;
   for (std::uint32_t i = 0; i < positions.size(); ++i) {

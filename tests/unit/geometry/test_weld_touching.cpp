@@ -19,7 +19,7 @@ struct Welded {
   Topology topology;
 };
 
-/// Of the mesh that the weld makes, without the triangles that lost a corner.
+/// A mesh's weld, and the topology of the welded mesh without the triangles that lost a corner.
 Welded weld_mesh(Mesh mesh, std::span<const std::uint32_t> open = {}) {
   Welded welded{weld(mesh.positions), {}};
   separate_touching(mesh.triangles, open, welded.result);
