@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Runs whose finish is made of jobs, without processes. With Composition::sink every part is a
+// Runs whose finish consists of jobs, without processes. With Composition::sink every part is a
 // piece.
 #pragma once
 
@@ -47,8 +47,8 @@ class FinishBench {
             .composition = Composition::sink};
   }
 
-  /// In the order in which they are asked for, or the other way round; then the sink that ends the
-  /// run is not the one that did its jobs.
+  /// Does the jobs in the order in which they are asked for, or backwards. If backwards, another
+  /// sink ends the run than the one that did its jobs.
   RunSummary run(const RunOptions& options, const std::string& name, bool backwards = false) {
     const JobSource jobs_of = make_job_source(manifest_, options);
     const JobContext context{stage_, 1, ++incarnation_, [](std::uint64_t) { return true; }};
@@ -92,7 +92,7 @@ inline void check_clean(const Topology& t) {
   CHECK(t.degenerate + t.zero_area + t.duplicate == 0);
 }
 
-/// So many parts, or streams that are swept.
+/// `parts` parts, or as many streams that are swept.
 inline std::vector<CutOptions> both_schemes(std::uint32_t parts) {
   return {{.parts = parts}, {.scheme = Scheme::stream, .parts = parts, .window_triangles = 1'500}};
 }

@@ -56,7 +56,7 @@ Made simplify(Mesh mesh, std::uint32_t parts, const RunOptions& run,
   return made;
 }
 
-/// A flat sheet but for one corner, which is rough: nearly all detail is in few parts.
+/// A flat sheet with one rough corner: nearly all detail is in few parts.
 Mesh sheet_with_a_rough_corner() {
   Mesh mesh = test::grid(120, 120);
   for (Vec3& p : mesh.positions) {
@@ -107,7 +107,7 @@ TEST_CASE("crossings are counted where the result is small beside the input") {
 
 TEST_CASE("where crossings are avoided, triangles that face away from the input are mended") {
   const test::TempFolder folder;
-  // A wall of two wavy sheets, thinner than what so few triangles can follow.
+  // A wall of two wavy sheets, thinner than so few triangles can follow.
   Mesh wall = test::grid(100, 100);
   const Mesh sheet = wall;
   const auto count = static_cast<std::uint32_t>(sheet.positions.size());
@@ -173,7 +173,7 @@ TEST_CASE("a surface that cannot go so far says so") {
                folder.path() / "uniform");
   CHECK(uniform.summary.triangles == 500);
   CHECK(uniform.summary.why_not_exact.find("the input has no more") == std::string::npos);
-  // A torus has fourteen at least: no piece is as small as it can be.
+  // A torus has at least fourteen triangles: no piece is as small as a piece can be.
   const Made torus =
       simplify(test::torus(12, 8), 1, {.triangles = 4, .lines = {.topology = TopologyMode::keep}},
                folder.path() / "torus");
@@ -207,7 +207,7 @@ TEST_CASE("pieces go where the count cannot be met with them, unless they are to
   CHECK(before.components == 100);
   CHECK(before.euler == 200);
   CHECK(after.components == measure_topology(simplified.mesh).components);
-  // One that is pinched is two, so that more may go than are missing.
+  // A pinched piece becomes two, so more pieces may be gone than are missing.
   CHECK(gone.components >= 100 - after.components);
   CHECK(gone.components < 100);
   CHECK(gone.area > 0.2 * gone.area_of_all);
@@ -220,7 +220,7 @@ TEST_CASE("pieces go where the count cannot be met with them, unless they are to
   CHECK_FALSE(kept.summary.topology_simplified);
   CHECK(measure_topology(kept.mesh).components == 100);
   CHECK(kept.summary.why_not_exact.find("topology") != std::string::npos);
-  // What needs no such thing is not done.
+  // No piece is removed where that is not needed.
   const Made enough = simplify(mesh, 4, {.triangles = 2000}, folder.path() / "enough");
   CHECK(enough.summary.triangles == 2000);
   CHECK(enough.summary.topology->before.components == 100);
@@ -275,7 +275,7 @@ TEST_CASE("the paper's way reaches about its count without touching the inside a
 
 namespace {
 
-/// Boxes in a row, each face a fine grid: 12 triangles a box would do, and no fewer.
+/// Boxes in a row, each face a fine grid: a box needs at least 12 triangles.
 Mesh boxes(int count) {
   constexpr std::uint32_t k_fine = 12;
   Mesh mesh;

@@ -31,7 +31,7 @@ namespace {
 constexpr std::uint32_t k_size = 60;
 const RunOptions k_run = {.triangles = 400, .textures = TextureMode::bake, .texture_size = 256};
 
-/// All of one colour.
+/// A picture of one colour.
 std::string plain_picture(std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
   std::vector<std::uint8_t> texels;
   for (int i = 0; i < 64 * 64; ++i) texels.insert(texels.end(), {red, green, blue});
@@ -72,7 +72,7 @@ class BakeBench {
     manifest_ = cut_mesh(*source, stage_, {.parts = 4});
   }
 
-  /// Does all jobs; those of the sink are `sink`'s.
+  /// Does all jobs; `sink` does those of the sink.
   void run(Assembler& sink) {
     const JobSource jobs_of = make_job_source(manifest_, k_run);
     for (std::vector<Job> jobs = test::next_jobs(jobs_of, accepted_); !jobs.empty();
@@ -110,8 +110,8 @@ class BakeBench {
   std::uint64_t bake_memory_ = 0;
 };
 
-/// The greatest amount by which a level at the middle of a triangle is not what it should be:
-/// red on the left, `right` on the right.
+/// The greatest error of a level at the middle of a triangle: it should be red on the left,
+/// `right` on the right.
 float worst_level(const std::filesystem::path& path, const std::array<float, 3>& right) {
   const auto source = open_mesh(path, {.textures = Textures::keep});
   const MeshFileInfo info = source->info();

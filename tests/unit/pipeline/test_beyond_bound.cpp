@@ -17,7 +17,7 @@ using namespace meshfarm;
 
 namespace {
 
-/// A triangle above the plane z = 0, whose middle is at the height.
+/// A triangle at `height` above the plane z = 0.
 Mesh roof(double height) {
   return {{{0, 0, height}, {3, 0, height}, {0, 3, height}}, {{0, 1, 2}}};
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A finish made of jobs, to a bound on the error.
+// A finish that consists of jobs, to a bound on the error.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -90,7 +90,7 @@ TEST_CASE("pieces keep a bound on the error, with about as few triangles as the 
 }
 
 TEST_CASE("a bound on the error is proven piece by piece and seam by seam") {
-  const Mesh shell = thin_shell();  // half as thick as the bound: either wall is near the other
+  const Mesh shell = thin_shell();  // half as thick as the bound: each wall is near the other
   FinishBench bench(shell, 14);
   RunOptions options = FinishBench::bounded(0.004);
   const double bound = 0.004 * diagonal_of(shell);
@@ -225,7 +225,7 @@ TEST_CASE("under a bound borders stay, and small components go") {
     CHECK(t.components == 1 + 5);
     CHECK(t.euler == 1 + 5 * 2);
     CHECK(t.nonmanifold_edges == 0);
-    // What was left out is far from the rest, and told.
+    // The components left out are far from the rest, and the summary tells it.
     CHECK(made.error.to_output.max > 3);
     CHECK(made.error.to_input.max < made.max_error);
   }

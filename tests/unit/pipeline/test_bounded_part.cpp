@@ -22,7 +22,7 @@ using namespace meshfarm;
 
 namespace {
 
-/// Of both directions.
+/// The greater distance of both directions.
 double farthest(const Mesh& a, const Mesh& b) {
   const HausdorffOptions options{.gap = 1e-4};
   return std::max(bound_distance(a, b, options).lower, bound_distance(b, a, options).lower);
@@ -41,8 +41,8 @@ Mesh simplified(const Mesh& mesh, double max_error, double certified_error,
   return decode_result(made.file, 0, "the part").mesh;
 }
 
-/// A rough sheet full of holes: between the points that simplification looks at there is room for
-/// errors.
+/// A rough sheet full of holes: there is room for errors between the points that simplification
+/// looks at.
 Mesh rough_sheet(std::uint32_t seed) {
   std::mt19937 random(seed);
   Mesh sheet = test::grid(40, 40);
@@ -71,7 +71,7 @@ TEST_CASE("a part keeps more where what is simplified is not within what is to b
   const Mesh sampled = simplified(torus, 0.05, 0, folder);
   CHECK(farthest(torus, sampled) > 0.04);
   std::size_t before = sampled.triangles.size();
-  // The first tries fail; at last none is within what is to be proven but the part itself.
+  // The first tries fail; at 1e-7 only the part itself is within the distance to be proven.
   for (const double certified : {0.025, 1e-7}) {
     CAPTURE(certified);
     const Mesh proven = simplified(torus, 0.05, certified, folder);

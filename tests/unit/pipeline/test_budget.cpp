@@ -15,7 +15,7 @@ using namespace meshfarm::test;
 
 TEST_CASE("the rung at a level is the coarsest that is not above it") {
   const std::vector<Rung> ladder = {rung(3, 100), rung(5, 60), rung(6, 40), rung(9, 10)};
-  CHECK(rung_at(ladder, 2) == 0);  // none is: the finest there is
+  CHECK(rung_at(ladder, 2) == 0);  // none is: the finest
   CHECK(rung_at(ladder, 3) == 0);
   CHECK(rung_at(ladder, 4) == 0);
   CHECK(rung_at(ladder, 5) == 1);
@@ -142,7 +142,7 @@ TEST_CASE("a stage without parts has no jobs; a target needs a ratio or a count"
   CHECK(next_of(manifest_of(0, 0), {.ratio = 0.5})({}).empty());
   CHECK(target_triangles(manifest_of(1, 1001), {.ratio = 0.5}) == 501);
   CHECK(target_triangles(manifest_of(1, 1000), {.triangles = 7}) == 7);
-  // Of what in the input is a triangle, however it is divided.
+  // The ratio is of the input's proper triangles, however the input is divided.
   Manifest dirty = manifest_of(1, 1000);
   dirty.parts[0].triangles = 900;
   dirty.dropped_degenerate = 80;
@@ -185,7 +185,7 @@ TEST_CASE("runs of different channels have different keys") {
   CHECK(key_of("red", Normals::blend) != key_of("heat", Normals::blend));
   CHECK(key_of("red", Normals::blend) != key_of("none", Normals::blend));
   CHECK_THROWS_AS(key_of("blue", Normals::blend), UsageError);
-  // Colours that are not wanted do not count.
+  // Unwanted colours do not count.
   const auto weight_of = [&](const std::string& choice) {
     return lines_of(manifest, {.ratio = 0.5, .channels = parse_choice(choice, "")})
         .appearance_scale.length;
@@ -244,7 +244,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
   }
   CHECK_THROWS_AS(decode_parameters(bytes + "x"), DataError);
   CHECK_THROWS_AS(decode_parameters("\x0c" + bytes.substr(1)), DataError);
-  // The topology stands last but for the two numbers of appearances, what is said of labels, and
+  // After the topology there are only the two numbers of appearances, what is said of labels, and
   // that there is nothing to build.
   std::string other = bytes;
   other[bytes.size() - 2 * sizeof(double) - 3] = 4;
@@ -289,7 +289,7 @@ TEST_CASE("vertices are fitted to points where these are few") {
   const auto fitting = [](std::uint64_t input, RunOptions options) {
     return sample_counts(manifest_of(10, input / 10), options).fitting;
   };
-  CHECK(fitting(10'000'000, {.ratio = 0.001}) == 200'000);  // more a triangle are of no use
+  CHECK(fitting(10'000'000, {.ratio = 0.001}) == 200'000);  // more per triangle are of no use
   CHECK(fitting(10'000'000, {.ratio = 0.005}) == 300'000);
   CHECK(fitting(10'000'000, {.triangles = 125'000}) == 500'000);
   CHECK(fitting(10'000'000, {.triangles = 125'001}) == 0);  // fewer would not help
@@ -328,7 +328,7 @@ TEST_CASE("samples are split evenly, and each set keeps some to be measured by")
   CHECK(split.measured[1].points.size() == 1);
   CHECK(split.fitting[1].points.size() == 1);
   CHECK(split.measured[2].points.empty());
-  // Where none are fitted all are measured.
+  // Where no samples are for fitting, all are for measuring.
   const SplitSamples all = split_samples(sets, {100, 0});
   CHECK(all.measured[0].points.size() == 1000);
   CHECK(all.fitting.empty());

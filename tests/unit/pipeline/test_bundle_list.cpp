@@ -14,7 +14,7 @@ using namespace meshfarm;
 
 namespace {
 
-/// Bundles of so many blocks, each with something of each of so many parts.
+/// Bundles of `blocks` blocks, each with something of each of `parts` parts.
 BundlesOfMesh make_bundles(std::uint32_t blocks, std::uint32_t parts) {
   BundlesOfMesh bundles{PositionType::float64, parts, {}, {}};
   for (std::uint32_t b = 0; b < blocks; ++b) {

@@ -20,20 +20,20 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A stage, and what runs leave in it. Everything is old at once.
+/// A stage, and what runs leave in it. Everything counts as old at once.
 struct CleanBench {
   test::TempFolder folder;
   Stage stage = Stage::create(folder / "stage");
   CleanOptions options{CleanWhat::finished_runs, false, std::chrono::seconds(0),
                        std::chrono::seconds(0)};
 
-  /// A result's file, by this worker.
+  /// Publishes a result file of this worker, and returns its name.
   std::string result(std::uint64_t key, std::uint64_t worker) const {
     const ResultName name{key, 1, worker};
     stage.publish(name, "result");
     return to_string(name);
   }
-  /// A run with one journal, that accepted such a result of each job.
+  /// A run with one journal that accepted such a result of each job.
   void run(std::uint64_t run, const std::vector<std::uint64_t>& keys) const {
     JournalWriter journal = open_journal(stage);
     for (const std::uint64_t key : keys) {

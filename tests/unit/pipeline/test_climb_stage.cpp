@@ -79,13 +79,13 @@ TEST_CASE("parts keep their topology first, and are stitched so if that is fair"
   // 4,000 are wanted before the finish: level 11.
   const AcceptedJob other = accepted(jobs[1], {rung(10, 7000), rung(11, 3800), rung(12, 100)});
   const auto with = [&](AcceptedJob held) { return std::vector{std::move(held), other}; };
-  // Held above the level that is chosen: the others pay nothing.
+  // Held above the chosen level: the others pay nothing.
   const auto above = with(accepted_held(jobs[0], {rung(10, 1000), rung(11, 700)}));
   CHECK(source(above).empty());
   CHECK(chosen_of(manifest, options, above).topology == TopologyMode::automatic);
   // Held below it with less than a tenth of all triangles.
   CHECK(source(with(accepted_held(jobs[0], {rung(10, 420)}))).empty());
-  // Below it with more, but by nothing that has to do with the topology.
+  // Below it with more, but not because of the topology.
   CHECK(source(with(accepted(jobs[0], {rung(10, 1000)}))).empty());
 }
 
@@ -100,7 +100,7 @@ TEST_CASE("where others would pay for the topology, all are asked for again with
   REQUIRE(again.size() == 2);
   for (std::size_t p = 0; p < 2; ++p) {
     CHECK(topology_of(again[p]) == TopologyMode::simplify);
-    // From where its first job had begun to refuse anything.
+    // It goes on from where the part's first job began to refuse collapses.
     CHECK(again[p].inputs == std::vector{done[p].output.file});
     CHECK(again[p].sections.size() == 3);
     CHECK(decode_parameters(again[p].parameters).from->level == 10);
@@ -109,7 +109,7 @@ TEST_CASE("where others would pay for the topology, all are asked for again with
           decode_parameters(jobs[p].parameters).start_triangles);
     CHECK(key_of(again[p]) != key_of(jobs[p]));
   }
-  // From there on it is a run like any other: who was taken too far is asked for again, finer.
+  // From there on it is a run like any other: a part taken too far is asked for again, finer.
   done.push_back(accepted(again[0], {rung(5, 8000), rung(6, 30)}));
   done.push_back(accepted(again[1], {rung(20, 3000), rung(21, 2000)}));
   const std::vector<Job> finer = source(done);
@@ -149,7 +149,7 @@ TEST_CASE("parts whose topology leaves more than the target are asked for again 
   };
   CHECK(source(both(2000)).empty());
   CHECK(source(both(2002)).size() == 2);
-  // One that goes on would have left half of its share.
+  // A part that goes on would have left half of its share.
   const auto beside = [&](std::uint64_t triangles) {
     const AcceptedJob going = accepted_ended(jobs[1], {rung(10, 2500)}, LadderEnd::enough);
     return std::vector{accepted_held(jobs[0], {rung(10, 2500), rung(14, triangles)}), going};
@@ -168,18 +168,18 @@ TEST_CASE("parts that are refused too much are asked for again without their top
   const auto refused = [](std::uint64_t triangles, std::uint64_t at_first) {
     std::vector<Rung> ladder = {rung(10, triangles), rung(11, triangles / 4)};
     ladder[0].refused = at_first;
-    ladder[1].refused = 4 * triangles;  // what comes later is not asked about
+    ladder[1].refused = 4 * triangles;  // later refusals do not matter
     return ladder;
   };
-  // 40,000 are wanted before the finish. As many as that: 1.1 a triangle.
+  // 40,000 are wanted before the finish. At that many, the threshold is 1.1 per triangle.
   CHECK_FALSE(asked_again(0.1, refused(20'000, 21'000)));
   CHECK(asked_again(0.1, refused(20'000, 23'000)));
-  // With 1.5 times as many a fifth of that a triangle tells as much.
+  // At 1.5 times as many, the threshold per triangle is a fifth of that.
   CHECK_FALSE(asked_again(0.1, refused(30'000, 6'000)));
   CHECK(asked_again(0.1, refused(30'000, 7'000)));
-  // Of few the finish finds out.
+  // With few triangles, the finish finds out.
   CHECK_FALSE(asked_again(0.01, refused(2000, 9000)));
-  // A ladder that ended for it is taken to fall as others do: to 13,700 here, a third.
+  // A ladder that ended for it is assumed to fall as others do: here to 13,700, a third.
   const auto source = next_of(manifest, {.ratio = 0.1});
   const std::vector<Job> jobs = source({});
   const auto asked_beside = [&](std::uint64_t refused_of_one) {
@@ -220,7 +220,7 @@ TEST_CASE("parts that were refused too much go on if the others would not have p
   // With more than 1.2 times the triangles at the same cost the topology is given up.
   CHECK(source(after(28'200)).empty());
   CHECK(chosen_of(manifest, options, after(28'200)).topology == TopologyMode::simplify);
-  // Else the one that had stopped goes on from its last rung.
+  // Otherwise the part that had stopped goes on from its last rung.
   std::vector<AcceptedJob> all = after(28'400);
   const std::vector<Job> on = source(all);
   REQUIRE(on.size() == 1);
@@ -229,7 +229,7 @@ TEST_CASE("parts that were refused too much go on if the others would not have p
   CHECK(decode_parameters(on[0].parameters).from->place == 1);
   CHECK(decode_parameters(on[0].parameters).from->level == 12);
   CHECK(decode_parameters(on[0].parameters).foreseen_triangles == 0);
-  // And that is not asked again, whatever it is refused.
+  // That job is not questioned again, however much it is refused.
   Rung much = rung(12, 26'000);
   much.refused = 1'000'000;
   all.push_back(accepted(on[0], {much, rung(13, 14'000)}));
@@ -238,10 +238,10 @@ TEST_CASE("parts that were refused too much go on if the others would not have p
   CHECK(chosen.topology == TopologyMode::automatic);
   CHECK(chosen.rungs[0].file.name == all.back().output.file.name);
   CHECK(chosen.rungs[1].file.name == done[1].output.file.name);
-  // But where it turns out to be held back, the topology is given up for good.
+  // But if it turns out to be held back, the topology is given up for good.
   all.back() = accepted_held(on[0], {rung(12, 26'000)});
   const std::vector<Job> given_up = source(all);
-  REQUIRE(given_up.size() == 1);  // the other one's is known
+  REQUIRE(given_up.size() == 1);  // the other part's result is known
   CHECK(topology_of(given_up[0]) == TopologyMode::simplify);
   CHECK(decode_parameters(given_up[0].parameters).from->place == 0);
   all.push_back(accepted(given_up[0], {rung(12, 25'000), rung(13, 15'000)}));
@@ -283,7 +283,7 @@ TEST_CASE("who says what becomes of the topology is asked once") {
     CHECK(source(done).empty());
     CHECK(chosen_of(manifest, options, done).topology == mode);
   }
-  // A bound on the error keeps it, since nothing has to be paid for a count.
+  // A bound on the error keeps the topology, since there is no count to pay for.
   CHECK(topology_of(next_of(manifest, {.error = {0.2, false}})({})[0]) == TopologyMode::keep);
   const RunOptions uniform{.ratio = 0.01, .allocation = Allocation::uniform};
   CHECK(topology_of(next_of(manifest, uniform)({})[0]) == TopologyMode::automatic);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Runs that cut their input themselves end as runs on a stage that was cut.
+// Runs that cut their input themselves end like runs on a stage that was cut before.
 #include <algorithm>
 #include <fstream>
 #include <map>
@@ -33,7 +33,7 @@ namespace {
 
 constexpr std::uint32_t k_parts = 12;  // two jobs join the boundary
 
-/// A torus of which some triangles have vertices of their own, and some no area.
+/// A torus where some triangles have vertices of their own, and some have no area.
 Mesh partly_torn() {
   Mesh mesh = test::torus(120, 60);
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 7) {
@@ -79,7 +79,7 @@ std::vector<AcceptedJob> do_all(const JobSource& source, const Stage& stage,
   std::vector<AcceptedJob> accepted;
   const auto next = [&] { return test::next_jobs(source, accepted); };
   for (std::vector<Job> jobs = next(); !jobs.empty(); jobs = next()) {
-    std::reverse(jobs.begin(), jobs.end());  // in another order than they were asked for
+    std::reverse(jobs.begin(), jobs.end());  // not in the order in which they were asked for
     for (const Job& job : jobs) {
       accepted.push_back({key_of(job), do_job(job, context)});
       check_output(job.kind, accepted.back().output);

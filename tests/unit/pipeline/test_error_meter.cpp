@@ -88,8 +88,7 @@ TEST_CASE("so is one of many, and one of many that the result pulled out") {
 }
 
 TEST_CASE("what is farthest between the corners of a large triangle is found, in both directions") {
-  // A lid over a narrow pit: nothing of it is farther from the sheet than what lies over the
-  // middle.
+  // A lid over a narrow pit: no point of it is farther from the sheet than those over the middle.
   const Mesh lid = {.positions = {{0, 0, 0}, {880, 0, 0}, {0, 880, 0}}, .triangles = {{0, 1, 2}}};
   Mesh pit = test::grid(180, 180);
   for (Vec3& p : pit.positions) p = {5 * p.x, 5 * p.y, p.x == 41 && p.y == 52 ? -40.0 : 0.0};

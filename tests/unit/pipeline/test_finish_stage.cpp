@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A finish made of jobs, to a count.
+// A finish that consists of jobs, to a count.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -48,7 +48,7 @@ TEST_CASE("pieces make a closed surface of the count, as good as the sink's") {
   const RunSummary here = bench.run({.triangles = 16'000}, "here.ply");
   CHECK(here.finished_in_pieces == 0);
   CHECK(made.error.greater().rms < 1.1 * here.error.greater().rms);
-  // It is what is measured with more points and in one place.
+  // The same error is measured with more points and in one place.
   const DistanceOptions many{.samples = 100'000, .threads = 1};
   const Distance forth = measure_distance(torus, mesh, many);
   const Distance back = measure_distance(mesh, torus, many);
@@ -267,7 +267,7 @@ TEST_CASE("small components are left out whole, though they span pieces") {
   for (const CutOptions& cut : both_schemes(6)) {
     FinishBench bench(mesh, cut);
     RunOptions options = FinishBench::farmed(15'001);
-    options.drop_components = {12, false};  // of the smaller balls the diagonals are 10.4
+    options.drop_components = {12, false};  // the smaller balls' diagonals are 10.4
     const RunSummary made = bench.run(options, "farm.ply");
     CHECK(bench.kinds()["components"] == 1);
     CHECK(made.why_finished_here.empty());
@@ -303,7 +303,7 @@ TEST_CASE("handles and small pieces go in pieces, where the count is not met wit
       options.lines.topology = topology;
       return bench.run(options, "o.ply");
     };
-    // A ring has 14 triangles at least.
+    // A ring has at least 14 triangles.
     RunSummary made = farmed(2'000, TopologyMode::automatic);
     CHECK(made.finished_in_pieces == 6);
     CHECK(made.triangles == 2'000);
@@ -342,7 +342,7 @@ TEST_CASE("vertices are fitted, in pieces and by the sink, and by nobody where t
     for (const FinishPlace place : {FinishPlace::here, FinishPlace::farm}) {
       CAPTURE(place);
       const double off = rms_of(VertexFit::off, place);
-      // In pieces what lies round the seams, much of so small a mesh, is not fitted.
+      // In pieces, the surroundings of seams are not fitted: a large share of so small a mesh.
       const double share = place == FinishPlace::here ? 0.98 : 0.997;
       CHECK(rms_of(VertexFit::on, place) < share * off);
       CHECK(rms_of(VertexFit::automatic, place) < share * off);

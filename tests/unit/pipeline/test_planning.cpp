@@ -11,7 +11,7 @@
 namespace meshfarm {
 namespace {
 
-/// Jobs of about 0.36 s that differ by a tenth, as a quiet machine does them.
+/// Jobs of about 0.36 s that differ by a tenth, as on a quiet machine.
 std::vector<PlannedJob> jobs_of(std::uint64_t count) {
   std::vector<PlannedJob> jobs;
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -85,7 +85,7 @@ TEST_CASE("jobs wait for all of less depth, or for those that they need") {
   CHECK(simulate_run(jobs, farm_of({{24, 1}})).farm_s == doctest::Approx(10).epsilon(0.02));
 }
 
-/// What some jobs read others read again, in the other order.
+/// Jobs that read something, and others that read the same again, in the other order.
 std::vector<PlannedJob> read_twice(std::uint64_t count, double seconds, std::uint64_t bytes) {
   std::vector<PlannedJob> jobs;
   for (const std::uint32_t depth : {0U, 1U}) {
@@ -109,7 +109,7 @@ TEST_CASE("a host does not read again what it has read, if it can keep that") {
   const PlannedRun read = simulate_run(jobs, farm);
   CHECK(read.storage_s == doctest::Approx(2 * once));
   CHECK(read.farm_s > kept.farm_s + 0.3 * once);
-  farm.cache_bytes = 2 * k_bytes;  // of three that each has read
+  farm.cache_bytes = 2 * k_bytes;  // of the three that each host has read
   CHECK(simulate_run(jobs, farm).storage_s > 1.2 * kept.storage_s);
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("the same work in more parts, and a draw from it") {
   CHECK(work(parts) == doctest::Approx(work(jobs)));
   CHECK(parts[0].triangles == jobs[0].triangles / 4);
 
-  // Of a whole run only the parts: what is before and after stays.
+  // In a whole run only the parts change: what comes before and after stays.
   std::vector<PlannedJob> run = jobs_of(103);
   for (std::size_t i = 0; i < run.size(); ++i) {
     run[i].depth = i < 2 ? 0 : i < 102 ? 1 : 2;
@@ -157,7 +157,7 @@ TEST_CASE("the same work in more parts, and a draw from it") {
   CHECK(sample.size() == 1000);
   CHECK(work(sample) == doctest::Approx(10 * work(jobs)).epsilon(0.02));
 
-  // Samples that are tried before the sweeps are not drawn.
+  // Jobs for samples, which are tried before the sweeps, are not drawn.
   std::vector<PlannedJob> jobs_by_depth = jobs_of(3);
   for (PlannedJob& job : jobs_by_depth) job.compute_s /= 1000;
   for (PlannedJob job : jobs) {

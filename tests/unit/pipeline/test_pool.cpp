@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A cut stage of so many triangles.
+/// A cut stage of `triangles` triangles.
 Stage stage_of(const fs::path& folder, std::uint64_t triangles) {
   Stage stage = Stage::create(folder);
   Manifest manifest;
@@ -78,7 +78,7 @@ TEST_CASE("a pool is the live runs of the stages in a folder, or linked there") 
   const std::vector<PoolRun> runs = runs_of_pool(pool);
   REQUIRE(runs.size() == 2);
   CHECK(runs[0] == PoolRun{pool / "far", 9, old_run, 2, 600});
-  CHECK(runs[1] == PoolRun{pool / "here", 8, new_run, 0, 500});  // there is no word of it yet
+  CHECK(runs[1] == PoolRun{pool / "here", 8, new_run, 0, 500});  // it has told nothing yet
   tell(far, old_run, 9, 2, 1000);
   CHECK(runs_of_pool(pool).size() == 1);  // nothing is left to give out there
 }

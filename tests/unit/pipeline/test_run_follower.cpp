@@ -48,7 +48,7 @@ TEST_CASE("who follows a stage sees what is added, line by line, and the next ru
   follower.look(trace);
   CHECK(trace->joined.size() == 2);
 
-  append(stage, 2, "");  // the next has begun, and said nothing yet
+  append(stage, 2, "");  // the next epoch has begun, and told nothing yet
   follower.look(trace);
   CHECK(trace->head.epoch == 1);
   append(stage, 2, head_line(2));

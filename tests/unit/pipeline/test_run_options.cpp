@@ -18,8 +18,8 @@ using namespace meshfarm;
 
 namespace {
 
-/// Octahedra in a row that touch at their tips, tori pinched to a point:
-/// what a seam cuts through decides which coincident vertices are merged.
+/// Octahedra in a row that touch at their tips, and tori pinched to a point: which coincident
+/// vertices are merged depends on what a seam cuts through.
 Mesh touching_everywhere() {
   constexpr std::uint32_t k_many = 40;
   Mesh mesh;
@@ -34,7 +34,7 @@ Mesh touching_everywhere() {
   return mesh;
 }
 
-/// What a summary tells of the input, and what a ratio asks for.
+/// What a summary tells of the input, and the count that a ratio asks for.
 using Told = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t>;
 
 Told told_of(const Manifest& m) {
@@ -87,7 +87,7 @@ TEST_CASE("textures are kept where the number of triangles allows it, else baked
   CHECK(made({.ratio = 0.5, .channels = parse_choice("none", "")}) == TextureMode::drop);
   CHECK(made({.ratio = 0.5, .channels = parse_choice("uvs", "")}) == TextureMode::keep);
 
-  // Who keeps them gets as many triangles as they need.
+  // A run that keeps textures gets as many triangles as they need.
   const RunOptions keep{.triangles = 50, .textures = TextureMode::keep};
   CHECK(asked_triangles(manifest, keep) == 50);
   CHECK(target_triangles(manifest, keep) == floor);

@@ -24,7 +24,7 @@ Mesh sheet() {
   return test::grid(20, 6);
 }
 
-/// Those that are locked first; all of these are unsure, or none.
+/// The locked vertices come first; either all or none of them are unsure.
 SeamMesh seams(bool unsure) {
   SeamMesh seams;
   seams.mesh = sheet();
@@ -62,7 +62,7 @@ TEST_CASE("round seams: what is locked stays, the rest goes as far as the bound 
 TEST_CASE("round seams: what others may change proves nothing") {
   const BoundedFinish made = simplify_seams(seams(true), sheet(), options(k_error));
   CHECK(count_between(made.mesh, 10.5, 21) == 10 * 7);
-  // What is near it stays, and so the rest can be proven without it.
+  // What is near the unsure part stays, so the rest can be proven without that part.
   CHECK(count_between(made.mesh, 9.5, 10.5) == 7);
   CHECK(count_between(made.mesh, -1, 9.5) < 20);
   // If nothing is to be proven, nothing is left to others.
@@ -74,7 +74,7 @@ TEST_CASE("round seams: what cannot be proven stays as it was") {
   Mesh input = sheet();
   const std::uint32_t first = static_cast<std::uint32_t>(input.positions.size());
   for (const Vec3 p : {Vec3{3, 3, 2}, Vec3{4, 3, 2}, Vec3{3, 4, 2}}) input.positions.push_back(p);
-  input.triangles.push_back({first, first + 1, first + 2});  // farther from all than the bound
+  input.triangles.push_back({first, first + 1, first + 2});  // farther than the bound from all
   const BoundedFinish made = simplify_seams(seams(false), input, options(k_error));
   CHECK(made.mesh.triangles.size() == sheet().triangles.size());
 }

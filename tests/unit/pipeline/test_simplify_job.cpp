@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint32_t k_boundary = 12;
 
-/// So many spheres in a row, and more of them than the goals leave triangles for.
+/// `count` spheres in a row, more than the goals leave triangles for.
 Part part_of_spheres(int count) {
   Part part;
   for (int i = 0; i < count; ++i) {
@@ -106,7 +106,7 @@ TEST_CASE("a ladder that may have to give up its topology begins where nothing w
   CHECK(kept.last().triangles >= 240);
   CHECK(simplified.last().triangles < 100);
   CHECK(measure_topology(bench.mesh_of(kept, 0).mesh).components == 60);
-  // From there on another job goes as far as from the part itself.
+  // Another job gets as far from there as from the part itself.
   const ClimbedPart on = bench.climb_on(kept, TopologyMode::simplify);
   CHECK(on.first().triangles <= kept.first().triangles);
   CHECK(on.last().triangles <= simplified.last().triangles + 4);
@@ -128,7 +128,7 @@ TEST_CASE("a ladder ends with what is wanted, unless its topology is kept at any
   const ClimbedPart kept = bench.climb(TopologyMode::keep, k_end);
   CHECK_FALSE(kept.summary.goes_on());
   CHECK(kept.last().triangles < 300);
-  // A ladder tells how much was refused for that by each of its rungs.
+  // Each rung of a ladder tells how much had been refused for that by then.
   CHECK(kept.last().refused > kept.first().refused);
   CHECK(bench.climb(TopologyMode::simplify).last().refused == 0);
 }
@@ -145,7 +145,7 @@ TEST_CASE("a ladder ends where too much is going to be refused, if that is fores
   REQUIRE(early.summary.rungs.size() >= 2);
   const Rung& before = early.summary.rungs[early.summary.rungs.size() - 2];
   CHECK(refused_by(before, k_wanted) <= 4 * k_wanted);
-  // As much as it has is no reason, and what is given up anyhow is not asked about.
+  // Not if all of it is wanted, nor if the topology is given up, or kept, anyhow.
   CHECK(bench.climb(TopologyMode::keep_while_fair, 0, 100'000).summary.end == LadderEnd::floor);
   CHECK(bench.climb(TopologyMode::simplify, 0, k_wanted).summary.end == LadderEnd::floor);
   CHECK(bench.climb(TopologyMode::keep, 0, k_wanted).summary.end == LadderEnd::floor);

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Slabs that the farm sorts: to the streams, samples and boundary that the cut makes by itself.
+// Slabs sorted by the farm: they become the streams, samples and boundary that the cut makes by
+// itself.
 #include <algorithm>
 #include <fstream>
 #include <numeric>
@@ -27,8 +28,8 @@ using namespace meshfarm;
 
 namespace {
 
-/// A torus as a soup with some triangles of no area, in no order: what is to be welded and dropped
-/// lies in slabs and on the boundaries between them.
+/// A torus as a soup in no order, with some triangles of no area. There is something to weld and
+/// to drop both inside slabs and on the boundaries between them.
 Mesh shuffled_soup() {
   const Mesh torus = test::torus(120, 60);
   std::vector<Triangle> triangles = torus.triangles;
@@ -43,7 +44,7 @@ Mesh shuffled_soup() {
   return soup;
 }
 
-/// Two tori that touch in many points, where slabs meet, too.
+/// Two tori that touch at many points, also where slabs meet.
 Mesh touching() {
   Mesh mesh = test::torus(100, 40);
   for (Vec3& p : mesh.positions) p.x = std::round(8 * p.x) / 8;
@@ -69,7 +70,7 @@ JobContext context_of(const Stage& stage) {
   return {stage, 1, 7, [](std::uint64_t) { return true; }};
 }
 
-/// Those of slabs alone, or all.
+/// Only the jobs of slabs, or all.
 enum class Which { of_slabs, all };
 
 std::vector<AcceptedJob> do_jobs(const JobSource& source, const Stage& stage, Which which,
@@ -185,7 +186,7 @@ TEST_CASE("a run that sorts first ends as one that finds streams, and estimates 
   CHECK(count(k_sort_kind) + count(k_sample_kind) ==
         static_cast<std::ptrdiff_t>(kinds[1].size() - kinds[0].size()));
 
-  // Climbing a whole stream takes more than sorting it: who goes by the first jobs would be wrong.
+  // Climbing a whole stream takes more memory than sorting it, so the first jobs do not tell.
   const Staged whole =
       generate(mesh, {.scheme = Scheme::stream, .parts = 1}, SortAt::farm, folder / "whole");
   CHECK(memory_wanted(whole.manifest, run) >

@@ -37,7 +37,7 @@ struct MadeByStreams {
   std::vector<std::string> kinds;  // of the jobs, in order
 };
 
-/// A ring whose one half is rough: the streams deserve very different numbers of triangles.
+/// A ring with one rough half: the streams deserve very different numbers of triangles.
 Mesh half_rough_torus() {
   Mesh mesh = test::torus(320, 160);  // 102,400 triangles
   for (Vec3& p : mesh.positions) {
@@ -93,7 +93,7 @@ TEST_CASE("swept streams, climbed streams and the uncut mesh end as good, closed
     const Topology t = measure_topology(made->mesh);
     CHECK(t.euler == 0);
     CHECK(t.border_edges + t.nonmanifold_edges + t.degenerate + t.duplicate == 0);
-    // Few triangles between seams: the finish cannot mend all. On large meshes it is one per cent.
+    // With few triangles between seams the finish cannot mend all. On large meshes it is 1 %.
     CHECK(rms(mesh, made->mesh) < 1.15 * rms(mesh, uncut.mesh));
   }
   CHECK(swept.summary.stitched > 4500);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Runs of which jobs tell ladders that nobody has climbed.
+// Runs whose jobs tell ladders that nobody has climbed.
 #pragma once
 
 #include <cstdint>
@@ -48,17 +48,17 @@ inline AcceptedJob accepted(const Job& job, std::vector<Rung> rungs) {
   return accepted(job, ResultSummary{.rungs = std::move(rungs)});
 }
 
-/// Of a part that its topology held back at its last rung.
+/// The result of a part that its topology held back at its last rung.
 inline AcceptedJob accepted_held(const Job& job, std::vector<Rung> rungs) {
   return accepted(job, ResultSummary{.rungs = std::move(rungs), .held_by_topology = true});
 }
 
-/// Of one whose ladder ended for that reason.
+/// The result of a part whose ladder ended for the reason `end`.
 inline AcceptedJob accepted_ended(const Job& job, std::vector<Rung> rungs, LadderEnd end) {
   return accepted(job, ResultSummary{.rungs = std::move(rungs), .end = end});
 }
 
-/// What is possible once some jobs are accepted.
+/// The jobs that are possible once some jobs are accepted.
 inline auto next_of(const Manifest& manifest, const RunOptions& options) {
   return [source = make_job_source(manifest, options)](std::span<const AcceptedJob> accepted) {
     return next_jobs(source, accepted);
