@@ -23,10 +23,10 @@ using namespace meshfarm;
 
 namespace {
 
-/// Whether bundles tell what they have, so that jobs are told only of those that they need.
+/// Whether bundles tell what they have, so that jobs learn only of those that they need.
 enum class Bundles { tell, do_not_tell };
 
-/// The cut of a file by steps, as jobs do them.
+/// The cut of a file in steps, as jobs do them.
 class SteppedCut {
  public:
   SteppedCut(const std::filesystem::path& file, std::uint32_t parts, std::size_t blocks,
@@ -127,7 +127,8 @@ class SteppedCut {
   std::mt19937 random_{7};
 };
 
-/// Both cuts of a mesh, part by part.
+/// Checks that both cuts of a mesh are the same, part by part; returns the rounds of the cut by
+/// blocks.
 int check_same_cut(const Mesh& mesh, std::uint32_t parts, std::size_t blocks,
                    PositionType positions = PositionType::float32,
                    Bundles telling = Bundles::tell) {
@@ -195,7 +196,7 @@ TEST_CASE("a cut by blocks makes the parts and the boundary of the cut, however 
   for (const std::size_t blocks : {1U, 3U, 17U, 64U}) check_same_cut(mesh, 5, blocks);
   check_same_cut(mesh, 1, 3);
   check_same_cut(mesh, 12, 7, PositionType::float64);
-  check_same_cut(test::torus(120, 80), 40, 5);  // whose boundary is joined by several jobs
+  check_same_cut(test::torus(120, 80), 40, 5);  // several jobs join its boundary
 }
 
 TEST_CASE("a cut by blocks takes vertices and triangles in any order") {

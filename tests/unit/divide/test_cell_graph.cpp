@@ -60,7 +60,7 @@ TEST_CASE("METIS cuts a square of cells into even, whole parts, the same each ti
 TEST_CASE("parts stay the same while other threads draw random numbers") {
   const CellTree tree = square_of_cells(32);
   const auto quiet = partition_cells(tree.cells(), {.parts = 8});
-  // That of the C library, from which ZeroMQ's threads may draw.
+  // The rand() of the C library, from which ZeroMQ's threads may draw.
   auto* const draw = reinterpret_cast<int (*)()>(::dlsym(RTLD_NEXT, "rand"));
   REQUIRE(static_cast<bool>(draw));
   std::atomic<bool> ends = false;
@@ -117,7 +117,7 @@ TEST_CASE("parts are numbered along a recursive bisection: a half of them is one
     const auto part = partition_cells(tree.cells(), {.parts = parts});
     REQUIRE(*std::max_element(part.begin(), part.end()) == parts - 1);
     CAPTURE(parts);
-    // The first half of all parts, of these, and so on.
+    // The first half of all parts, then the first half of these, and so on.
     for (std::uint32_t range = parts; range >= 4; range /= 2) {
       CAPTURE(range);
       const auto is_first_half = [&](std::size_t cell) { return part[cell] < range / 2; };
@@ -133,7 +133,7 @@ TEST_CASE("parts are numbered along a recursive bisection: a half of them is one
           between += is_first_half(i) != is_first_half(next) ? 1 : 0;
         }
       }
-      // Two squares side by side share a line of the square root of half of their cells.
+      // Two squares side by side share a line as long as the square root of half of their cells.
       CHECK(static_cast<double>(between) < 2 * std::sqrt(static_cast<double>(inside)));
     }
   }

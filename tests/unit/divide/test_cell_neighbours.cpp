@@ -13,7 +13,7 @@ using namespace meshfarm;
 
 namespace {
 
-/// The cells of points in a cube of so many cells a side.
+/// The cells of points in a cube of 2^bits cells per side.
 CellTree tree_of(unsigned bits, const std::vector<Vec3>& points) {
   const double side = 1U << bits;
   Box box;
@@ -66,7 +66,7 @@ TEST_CASE("the neighbours of a cell are the nearest of those beside it") {
     expected.insert(static_cast<std::uint32_t>(cell_at(tree, beside)));
   }
   CHECK(of_cell(all, k_faces, cell_at(tree, {1.5, 1.5, 2.5})) == expected);
-  // A corner has seven beside it, none of them across the grid.
+  // A corner cell has seven beside it, none of them on the other side of the grid.
   constexpr std::size_t k_corner = 7;
   const auto more = cell_neighbours(tree.cells(), tree.grid_bits(), k_corner, 1);
   for (const std::uint32_t other : of_cell(more, k_corner, cell_at(tree, {3.5, 0.5, 0.5}))) {
@@ -83,7 +83,7 @@ TEST_CASE("a cell with few beside it has the nearest of all cells") {
   const auto next = static_cast<std::uint32_t>(cell_at(tree, {12.5, 9.5, 9.5}));
   const auto second = static_cast<std::uint32_t>(cell_at(tree, {1.5, 0.5, 0.5}));
   CHECK(of_cell(all, 2, alone) == std::set<std::uint32_t>{next, second});
-  // As if the keys were of no grid.
+  // The same if the keys belonged to no grid.
   CHECK(cell_neighbours(tree.cells(), {}, 2, 1) == all);
   CHECK(of_cell(cell_neighbours(tree.cells(), {}, 9, 1), 9, alone).size() == 3);
 }

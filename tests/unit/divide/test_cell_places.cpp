@@ -17,8 +17,8 @@ using namespace meshfarm;
 
 namespace {
 
-/// Dense in one corner, hollow in the middle, with one far outlier and a point that has 3,000
-/// vertices.
+/// Points dense in one corner, hollow in the middle, with one far outlier and 3,000 vertices at
+/// one point.
 std::vector<Vec3> uneven_points() {
   std::mt19937_64 random(7);
   std::vector<Vec3> points;
@@ -95,7 +95,7 @@ TEST_CASE("a vertex that was not counted is an error") {
   };
   CHECK_NOTHROW(find({1e4, -20, 3}));
   CHECK_THROWS_AS(find({5e3, 2, 3}), DataError);
-  // In a cell that is divided, where the finer grid has none.
+  // In a divided cell, where the finer grid has no cell.
   CHECK_THROWS_AS(find({0.5, 0.5, 0.5}), DataError);
 }
 

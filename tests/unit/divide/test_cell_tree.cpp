@@ -47,7 +47,7 @@ std::uint64_t heaviest(const CellTree& tree) {
   return most;
 }
 
-/// Each vertex is in the cell that number_of() says, and the cells hold all.
+/// Checks that number_of() gives each vertex's cell, and that the cells hold all vertices.
 void check_numbers(CellTree& tree, const std::vector<Vec3>& points) {
   std::vector<std::uint64_t> counts(tree.cells().size(), 0);
   for (const Vec3& p : points) {
@@ -83,7 +83,7 @@ TEST_CASE("vertices far out make no cell coarser") {
     CHECK(heaviest(made.tree) <= points.size() / 8 / 32);
     check_numbers(made.tree, points);
   }
-  std::vector<Vec3> points = inner;  // and further and further out
+  std::vector<Vec3> points = inner;  // and some farther and farther out
   for (double far = 2; far < 1e30; far *= 3) points.push_back({far, -far, 0});
   Counted made = count(points, {.bits = 5, .parts = 8});
   CHECK(heaviest(made.tree) <= points.size() / 8 / 32);

@@ -62,7 +62,7 @@ std::vector<Corners> triangles_of(const CutMesh& made) {
   return all;
 }
 
-/// Those with this label.
+/// The triangles with this label.
 std::vector<Corners> triangles_of(const Mesh& mesh, Label label) {
   Mesh some = mesh;
   keep_triangles(some, [&](std::size_t i) { return mesh.columns.labels[i] == label; });
@@ -158,7 +158,7 @@ TEST_CASE("the same cut from any number of threads and in any memory") {
 }
 
 TEST_CASE("coincident vertices are welded across the whole mesh, seams included") {
-  // Every triangle with corners of its own, as in an STL file.
+  // Every triangle has vertices of its own, as in an STL file.
   const Mesh mesh = test::torus(40, 30);
   Mesh soup;
   for (const Triangle& t : mesh.triangles) {

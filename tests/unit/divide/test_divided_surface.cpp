@@ -29,7 +29,7 @@ void check_same(const Topology& a, const Topology& b) {
   CHECK(a.euler == b.euler);
 }
 
-/// As few bytes as this make many slabs.
+/// So few bytes that there are many slabs.
 constexpr std::uint64_t k_little = 20'000;
 
 SurfaceTopology measured(const Mesh& mesh, std::uint64_t memory_bytes) {
@@ -40,7 +40,7 @@ SurfaceTopology measured(const Mesh& mesh, std::uint64_t memory_bytes) {
   return surface.measure_topology();
 }
 
-/// Each triangle by itself.
+/// Each triangle with vertices of its own.
 Mesh soup_of(const Mesh& mesh) {
   Mesh soup;
   for (const Triangle& t : mesh.triangles) {
@@ -125,7 +125,7 @@ TEST_CASE("triangles that are points are counted, however many") {
   constexpr std::uint32_t k_many = 30'000;
   Mesh mesh = test::grid(60, 30);
   mesh.triangles.insert(mesh.triangles.end(), k_many, Triangle{7, 7, 7});
-  Mesh soup = mesh;  // the same, of vertices of their own
+  Mesh soup = mesh;  // the same, with vertices of their own
   for (std::size_t i = soup.triangles.size() - k_many; i < soup.triangles.size(); ++i) {
     const auto first = static_cast<std::uint32_t>(soup.positions.size());
     soup.positions.insert(soup.positions.end(), 3, soup.positions[7]);

@@ -13,7 +13,7 @@ using namespace meshfarm;
 
 namespace {
 
-/// Resident pages: "RssFile:" of files that are mapped, "RssAnon:" of memory.
+/// Resident bytes: "RssFile:" of mapped files, "RssAnon:" of memory.
 std::uint64_t resident_bytes(std::string_view kind) {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
@@ -36,7 +36,7 @@ TEST_CASE("a large map is not held in memory, and knows all vertices") {
   std::uint64_t most = before;
   std::vector<Vec3> batch(k_batch);
   for (std::uint32_t i = 0; i < k_batches; ++i) {
-    // The first vertex of each batch counts.
+    // Only the first vertex of each batch belongs to a share.
     std::vector<std::uint32_t> where(k_batch, MeshShares::k_no_share);
     where[0] = i % 2;
     batch[0] = {1.0 * i, 0, 0};

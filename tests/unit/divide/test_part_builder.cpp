@@ -14,7 +14,7 @@ using namespace meshfarm;
 
 namespace {
 
-/// Two tetrahedra, outside out, whose fourth corners are at the same point: vertices 3 and 7.
+/// Two tetrahedra that face outwards, with their fourth corners, 3 and 7, at the same point.
 MeshShare tips_that_touch() {
   MeshShare share;
   share.positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 1},
@@ -65,7 +65,7 @@ TEST_CASE("at the seams of a share it tells itself what stays apart") {
   share.boundary = {3, 7};
   WeldResult as_open = weld(share.positions);
   keep_apart(share, as_open);
-  CHECK(as_open.first[7] == 3);  // they have triangles elsewhere: what these are decides
+  CHECK(as_open.first[7] == 3);  // they have triangles elsewhere, and those decide
 
   share.apart = {{3, 0}, {7, 1}};
   WeldResult as_told = weld(share.positions);
@@ -109,7 +109,7 @@ TEST_CASE("a part has its boundary vertices first, no unused ones, and the same 
       CHECK(corners_of(mesh, t) ==
             ThreePoints{input.positions[was[0]], input.positions[was[1]], input.positions[was[2]]});
     }
-    // The least of those that became one.
+    // Of vertices that became one, the least appearance stays.
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       const auto first =
           std::find(input.positions.begin(), input.positions.end(), mesh.positions[v]);

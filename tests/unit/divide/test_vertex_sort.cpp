@@ -12,7 +12,7 @@ using namespace meshfarm;
 
 namespace {
 
-/// Few different coordinates, of both signs and both zeros: many ties of one, two and three.
+/// Few different coordinates, of both signs and both zeros: many ties in one, two and three axes.
 std::vector<Vec3> points(std::size_t count, PositionType type) {
   std::mt19937 random(11);
   const std::vector<double> values = {-3.5, -1e-30, -0.0, 0.0, 1e-30, 0.1, 2, 1e20};

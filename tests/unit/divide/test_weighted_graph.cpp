@@ -62,7 +62,7 @@ TEST_CASE("two rounds of pairs make nodes of 2 x 2, and no edge or weight is los
   const Coarsening twice = coarsened(once.graph, 4);
   REQUIRE(twice.graph.nodes() == 16);
   for (const std::int32_t weight : twice.graph.weights) CHECK(weight == 4);
-  // 2 x 16 edges inside of the nodes, 2 x 4 x 3 pairs of nodes with two edges each.
+  // 2 x 16 edges lie inside the nodes; 2 x 4 x 3 pairs of nodes have two edges each.
   CHECK(twice.graph.targets.size() == 48);
   for (const std::int32_t weight : twice.graph.edge_weights) CHECK(weight == 2);
   const std::set<std::uint64_t> places(twice.graph.places.begin(), twice.graph.places.end());
@@ -80,7 +80,7 @@ TEST_CASE("an edge is as heavy in a coarser graph as in the finer one") {
     CHECK(std::accumulate(next.graph.weights.begin(), next.graph.weights.end(), std::int64_t{0}) ==
           weight);
     CHECK(*std::max_element(next.graph.weights.begin(), next.graph.weights.end()) <= 20);
-    // What is in other parts there is in other parts here.
+    // The weight between coarse nodes is that between the same groups of fine nodes.
     std::vector<std::int32_t> each(next.graph.nodes());
     std::iota(each.begin(), each.end(), 0);
     CHECK(weight_between(next.graph, each) == weight_between(graph, next.node_of));

@@ -10,8 +10,8 @@
 
 namespace meshfarm::test {
 
-/// A triangle as its corners' positions, turned so that the least comes first: the same triangle in
-/// whatever mesh and numbering.
+/// A triangle as its corners' positions, rotated so that the least comes first: the same in any
+/// mesh and numbering.
 using Corners = std::array<std::array<double, 3>, 3>;
 
 inline Corners corners_of(Vec3 a, Vec3 b, Vec3 c) {
@@ -20,7 +20,7 @@ inline Corners corners_of(Vec3 a, Vec3 b, Vec3 c) {
   return corners;
 }
 
-/// All of a mesh, sorted.
+/// All triangles of a mesh, sorted.
 inline std::vector<Corners> triangles_of(const Mesh& mesh) {
   std::vector<Corners> all;
   for (const auto& [a, b, c] : mesh.triangles) {
