@@ -27,7 +27,7 @@ StreamMesh stream_of(const Mesh& mesh, std::uint32_t boundary = 0) {
   return sort_slab(std::move(share), {}).stream;
 }
 
-/// A swept stream with all that it sent put together.
+/// A swept stream, and everything that it sent put together.
 struct Swept : SweptStream {
   Mesh mesh;
   std::uint32_t boundary_vertices = 0;
@@ -149,7 +149,7 @@ TEST_CASE("what is passed is sent on at once, window by window") {
   const Swept result = swept(stream_of(mesh), {.max_cost = -1, .window_triangles = 2'000});
   CHECK(result.mesh.triangles.size() == mesh.triangles.size());
   CHECK(result.pieces >= 5);
-  CHECK(result.largest_piece < 19'000);  // a block, and what the last one left
+  CHECK(result.largest_piece < 19'000);  // a block, and what the one before left
 }
 
 TEST_CASE("with a ratio every window keeps its share") {
