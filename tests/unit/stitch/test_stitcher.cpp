@@ -103,8 +103,7 @@ std::vector<BoundaryTriangle> seams(std::uint32_t parts) {
   return all;
 }
 
-/// What a composition makes of the stitched mesh, without the simplification: the open vertices
-/// first.
+/// The result of a composition of the stitched mesh, without simplification: open vertices first.
 ResultMesh composed(const StitchedMesh& stitched) {
   ResultMesh result;
   const std::size_t vertices = stitched.mesh.positions.size();
