@@ -65,7 +65,8 @@ class Run:
             code = process.poll()
             if code is None or name in self.done:
                 continue
-            # A worker may leave because a run was given up, and be needed when that is taken up again.
+            # A worker may leave because a run was given up, and be needed again when the run is
+            # resumed.
             done = code == 0 and not name.startswith("worker")
             if done or "sink" in self.done:
                 self.done.add(name)
@@ -109,7 +110,8 @@ class Run:
             if now - begin > LIMIT_S:
                 return False
             self.restart_dead()
-            # A ventilator may end just before a killed sink is back, which then needs another.
+            # A ventilator may end just before a killed sink is back, which then needs another
+            # ventilator.
             lonely = "ventilator" in self.done and "sink" not in self.done
             lonely_since = (lonely_since or now) if lonely else None
             if lonely and now - lonely_since > 3:

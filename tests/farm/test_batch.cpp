@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Many files with one crew of workers: a file that fails does not stop the others, and the same
-// command goes on.
+// Batches of many files with one crew of workers. A file that fails does not stop the others, and
+// the same command resumes the batch.
 #include <doctest/doctest.h>
 
 #include "support/process.hpp"
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Meshes of several sizes, and what each becomes by itself.
+/// Meshes of several sizes, and the result of simplifying each by itself.
 class Bench {
  public:
   Bench() {
@@ -81,7 +81,7 @@ TEST_CASE("each file of a batch becomes what it would by itself; what fails stop
   CHECK(has(ran.out, "absent.ply: No such file"));
   CHECK(has(ran.out, "5 files: 3 done, 2 failed"));
 
-  // The same again: what is done is not done anew, what failed is tried again.
+  // The same command again: finished files are not redone, failed ones are retried.
   const auto written = fs::last_write_time(fs::path(bench().path("out")) / "mesh20000.ply");
   fs::copy_file(bench().inputs[0], bad, fs::copy_options::overwrite_existing);
   files.pop_back();
@@ -93,7 +93,7 @@ TEST_CASE("each file of a batch becomes what it would by itself; what fails stop
   CHECK(fs::exists(fs::path(bench().path("out")) / "bad.ply"));
   CHECK(has(again.out, "1 done, 2 done before"));
 
-  // Of another target nothing was done.
+  // For another target nothing has been done yet.
   std::vector<std::string> words = bench().words({bench().inputs[0]}, "out");
   words[4] = "0.2";
   words.emplace_back("--json");
@@ -167,7 +167,7 @@ TEST_CASE("the results of a batch are in the formats of the files, or PLY") {
     REQUIRE(bench().meshfarm({"convert", (results / name).string(), back}).code == 0);
     CHECK((read_text(back) == expected));
   }
-  // As compressed GLB it is another result.
+  // Compressed GLB is a different result.
   const auto plain_bytes = fs::file_size(results / "mesh20000.glb");
   words.pop_back();
   CHECK(bench().meshfarm(words).code == 0);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What vertices have beside their position, from the input to the output of real runs.
+// Vertex channels (everything beside the position), from input to output of real runs.
 #include <algorithm>
 #include <cmath>
 
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A sphere of 81,920 triangles with two components of a colour, its normals and a heat.
+/// A sphere of 81,920 triangles with two colour components, normals and a heat value.
 const std::vector<Channel> k_channels = {{"red", ChannelType::uint8, ChannelRole::colour},
                                          {"green", ChannelType::uint8, ChannelRole::colour},
                                          {"nx", ChannelType::float32, ChannelRole::normal},
@@ -110,7 +110,7 @@ void check_values(const std::string& path) {
   }
 }
 
-/// The RMS that the summary tells.
+/// The RMS in the summary.
 double red_error(const Ran& ran) {
   const std::string before = "channels         red ";
   const std::size_t at = ran.out.find(before);
@@ -132,7 +132,7 @@ TEST_CASE("a coloured scan comes back coloured, the same from any number of work
     CHECK(bench.simplify("in.ply", "3.ply", {"--scheme", scheme, "--workers", "3"}).code == 0);
     CHECK(read_text(bench.path("1.ply")) == read_text(bench.path("3.ply")));
 
-    // Nothing else depends on them where they do not count.
+    // With no attributes, or with weight 0, nothing else in the result depends on the channels.
     CHECK(bench.simplify("plain.ply", "plain-out.ply", {"--scheme", scheme}).code == 0);
     const Ran without =
         bench.simplify("in.ply", "none.ply", {"--scheme", scheme, "--attributes", "none"});

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Two commands that want to make one thing.
+// Two commands that want to make the same output or stage.
 #include <string>
 
 #include <doctest/doctest.h>
@@ -34,7 +34,7 @@ TEST_CASE("of two commands on one output the second says who is at work, at once
   const std::string output = bench.path("out/o.ply");
   const std::vector<std::string> words = {"run", stage,  "--ratio", "0.1",
                                           "-o",  output, "--bind",  "127.0.0.1"};
-  Process first = bench.start(words);  // nobody works for it: it waits
+  Process first = bench.start(words);  // without a worker, so it waits
   REQUIRE(wait_until([&] { return has_claim(bench.path("out")); }));
   Process second = bench.start(words);
   CHECK(second.wait(20) == 1);

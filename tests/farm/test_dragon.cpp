@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The main job on a real scan: the Stanford dragon, where scripts/get-dragon.sh has fetched it. It
-// has 2,100 coincident vertices, 151 loose pieces and 4,270 border edges; welded it is one closed
-// surface.
+// The main job on a real scan: the Stanford dragon, if scripts/get-dragon.sh has fetched it. It has
+// 2,100 coincident vertices, 151 loose pieces and 4,270 border edges; once welded, it is a single
+// closed surface.
 #include <algorithm>
 #include <cstdlib>
 
@@ -42,7 +42,7 @@ TEST_CASE("the dragon to 1 %: closed, one piece, its tunnels kept, and close to 
   REQUIRE(ran.code == 0);
   CHECK(number_in(ran.out, "input", "triangles") == 871'414);
   CHECK(number_in(ran.out, "input", "coincident_vertices") == 2'100);
-  CHECK(number_in(ran.out, "output", "triangles") == 8'712);  // 1 % is 8,713: one more than even
+  CHECK(number_in(ran.out, "output", "triangles") == 8'712);  // 1 % is 8,713, which is odd
   const double told = number_in(ran.out, "error", "rms");
 
   const Ran compared =
@@ -60,6 +60,6 @@ TEST_CASE("the dragon to 1 %: closed, one piece, its tunnels kept, and close to 
   CHECK(measured < 3.3e-4);
   const double back = number_in(compared.out, "b_to_a", "rms");
   CHECK(back < 3.3e-4);
-  // The summary's own figure is honest.
+  // The summary must report the error that was measured here.
   CHECK(told == doctest::Approx(std::max(measured, back)).epsilon(0.05));
 }

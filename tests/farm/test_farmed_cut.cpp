@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Whole runs whose input is cut by the farm: killed at every stage, they end with the bytes that a
-// cut by one process leads to.
+// Whole runs whose input is cut by the farm. Killed at every stage, they end with the same bytes as
+// after a cut by one process.
 #include <fstream>
 
 #include <doctest/doctest.h>
@@ -34,7 +34,7 @@ class Bench : public FarmBench {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
-  /// A stage whose first run is to cut: 5 x 4 jobs and the partition come before the 12 parts.
+  /// A stage whose first run does the cut: 5 x 4 jobs and the partition come before the 12 parts.
   std::string planned() { return cut({"--cut", "farm", "--blocks", "5", "--parts", "12"}); }
   std::vector<std::string> replay(const std::string& stage, const std::string& workers) const {
     return {"replay", stage, "-o", stage + ".ply", "--ratio", "0.02", "--workers", workers};
@@ -109,8 +109,8 @@ TEST_CASE("a cut by the farm: parts are simplified to a bound on the error as if
 
 TEST_CASE("a cut by the farm: killed at every stage, a run goes on, and cuts only once") {
   const std::string stage = bench().planned();
-  // In the survey, as cells are counted, vertices and triangles scattered, parts climbed, at the
-  // end.
+  // During the survey, counting cells, scattering vertices and triangles, climbing parts, and at
+  // the end.
   for (const std::size_t results : {2, 7, 11, 13, 18, 24, 32}) {
     Process run = bench().start(bench().replay(stage, "1"));
     REQUIRE(wait_for_results(stage, results));
@@ -121,7 +121,7 @@ TEST_CASE("a cut by the farm: killed at every stage, a run goes on, and cuts onl
   CHECK(bench().meshfarm(bench().replay(stage, "2")).code == 0);
   bench().check_result(stage + ".ply");
 
-  // Parts are climbed anew for another target, and the boundary is joined of what they tell.
+  // For another target the parts are climbed again, and the boundary is joined from their results.
   const std::size_t before = results_in(stage);
   CHECK(before >= k_jobs_of_cut + 12 + 2);
   const std::vector<std::string> other = {"replay",         stage,     "-o",
@@ -138,7 +138,8 @@ TEST_CASE("a cut by the farm: what parts are built of is damaged, and made again
   CHECK(run.wait() == -SIGKILL);
   std::uintmax_t damaged = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(stage) / "results")) {
-    // Bundles alone are so large: a new sink looks at them, and leaves them to those who read them.
+    // Only bundles are this large: a new sink only looks at them, and leaves reading to their
+    // readers.
     if (entry.file_size() < 256 * 1024) continue;
     std::fstream file(entry.path(), std::ios::in | std::ios::out | std::ios::binary);
     for (std::uintmax_t at = 1000; at < entry.file_size(); at += 5000) {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Every n-th call that writes, reads, makes, names or removes a file, of worker, sink and
-// ventilator, fails, is cut short, or is the process's last deed (support/fault_shim.cpp). Each run
-// must end, or stop with one clear line and be taken up again, with the same bytes.
-// MESHFARM_FAULTS=all tries every n with every kind of fault; else the first and a later n of each,
-// and kills, for a quick answer.
+// The n-th file call (write, read, create, rename, remove) of worker, sink or ventilator fails, is
+// cut short, or kills the process (support/fault_shim.cpp). Each run must end, or stop with one
+// clear line and be resumable, with the same bytes. MESHFARM_FAULTS=all tries every n with every
+// kind of fault. The default, to be quick, tries the first and sometimes a later n, with fewer
+// kinds.
 #include <cstdlib>
 #include <utility>
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A small mesh, a stage that is cut of it, and how it is run.
+/// A small mesh, a stage cut from it, and the options of its runs.
 class Bench : public FarmBench {
  public:
   Bench(const std::string& triangles, const std::vector<std::string>& how_cut,
@@ -38,7 +38,7 @@ class Bench : public FarmBench {
   Ran replay(const std::string& stage, const std::string& output) {
     return meshfarm(replay_words(stage, output));
   }
-  /// A fresh stage, all whose files are below path("run").
+  /// A fresh stage, with all its files below path("run").
   void fresh() {
     fs::remove_all(path("run"));
     fs::create_directories(path("run"));
@@ -63,8 +63,8 @@ Bench& streams() {
   return instance;
 }
 
-/// The first run cuts, and finishes in pieces: surveys, counts and scatters, climbs, splits,
-/// reduces and measures, and streams the pieces into the output.
+/// The first run does the cut, and finishes in pieces: it surveys, counts, scatters, climbs,
+/// splits, reduces and measures, and streams the pieces into the output.
 Bench& farmed() {
   static Bench instance(
       "20000", {"--parts", "3", "--cut", "farm", "--blocks", "2"},
@@ -77,7 +77,7 @@ bool all_of_them() {
   return wish != nullptr && std::string(wish) == "all";
 }
 
-/// Sets the environment of the processes that are started meanwhile.
+/// Sets the environment of the processes started during its lifetime.
 class Injection {
  public:
   Injection(const Bench& bench, const std::string& role, const std::string& fault) {
@@ -87,7 +87,7 @@ class Injection {
     set("MESHFARM_FAULT_BELOW", bench.path("run"));
     set("MESHFARM_FAULT_FIRED", bench.path("fired"));
   }
-  /// The disk is full as long as the file is there.
+  /// The disk is full while the file `full_while` exists.
   Injection(const std::string& below, const std::string& full_while) {
     set("LD_PRELOAD", MESHFARM_FAULT_SHIM);
     set("MESHFARM_FAULT_BELOW", below);
@@ -114,7 +114,7 @@ std::size_t errors_in(const std::string& text) {
   return count;
 }
 
-/// Runs with the fault. False if it did not strike, as there are fewer calls than that.
+/// Runs with the fault. False if the fault did not strike because there are fewer calls than `nth`.
 bool survives(Bench& bench, const std::string& role, const std::string& call,
               const std::string& kind, int nth) {
   const std::string fault = call + ":" + kind + ":" + std::to_string(nth);
@@ -135,7 +135,7 @@ bool survives(Bench& bench, const std::string& role, const std::string& call,
     CHECK(errors_in(ran.err) == 1);
     CHECK_FALSE(fs::exists(bench.path("run/out.ply")));
     const bool full = kind == "ENOSPC" || kind == "EDQUOT";
-    if (full) CHECK(ran.code == 3);  // before there was a run that could wait
+    if (full) CHECK(ran.code == 3);  // the fault came before there was a run that could wait
     const Ran again = bench.replay("run/stage", "run/out.ply");
     CAPTURE(again.err);
     CHECK(again.code == 0);
@@ -144,7 +144,7 @@ bool survives(Bench& bench, const std::string& role, const std::string& call,
   return fs::exists(bench.path("fired"));
 }
 
-/// A full disk costs seconds: the quick answer tries it at few calls.
+/// A full disk costs seconds: the quick mode tries it on few calls only.
 std::vector<std::string> kinds_of(const std::string& call) {
   std::vector<std::string> kinds = {"kill", "EIO"};
   if (call == "read") kinds.insert(kinds.end(), {"ESTALE", "short"});
@@ -156,7 +156,7 @@ std::vector<std::string> kinds_of(const std::string& call) {
   return kinds;
 }
 
-/// How many of the faults struck, of those that were tried.
+/// The number of faults that struck.
 int try_all(Bench& bench, const std::string& role) {
   int struck = 0;
   for (const std::string call :
@@ -260,7 +260,7 @@ TEST_CASE("a disk that is full for a while is waited for, and status says so") {
   CHECK(run.wait() == 0);
   CAPTURE(run.err());
   CHECK(errors_in(run.err()) == 0);
-  CHECK(run.err().find("run the same command again") == std::string::npos);  // it went on
+  CHECK(run.err().find("run the same command again") == std::string::npos);  // it went on by itself
   bench.check_result(bench.path("run/out.ply"));
 }
 
@@ -283,7 +283,7 @@ TEST_CASE("status compares no two hosts' clocks") {
     CHECK(meshfarm::test::wait_until(waits, 10));
     ventilator.signal(SIGKILL);
     CHECK(ventilator.wait() == -SIGKILL);
-    CHECK(says("waiting for the sink"));  // until then it was alive
+    CHECK(says("waiting for the sink"));  // it was alive a moment ago
     const auto gone = [&] { return says("no word from the ventilator for 1"); };
     CHECK(meshfarm::test::wait_until(gone, 30));
   }
@@ -343,7 +343,7 @@ TEST_CASE("a disk that fails while the input is read is one line that names it, 
       CHECK((ran.err.find(input + ": Input/output error") != std::string::npos) == struck);
       CHECK(fs::exists(bench.path("of-input/manifest")) == (!struck && words[0] == "cut"));
     }
-    CHECK(nth > 4);  // in the header, vertices and triangles
+    CHECK(nth > 4);  // faults in the header, the vertices and the triangles
   }
 }
 
@@ -353,7 +353,7 @@ TEST_CASE("a worker whose file system hangs is left behind") {
 }
 
 TEST_CASE("a worker may fail at any piece of what it writes while it sweeps") {
-  // A sample's result is one write each; then come the pieces of the swept ones.
+  // A sample's result is one write each; the pieces of the swept results follow.
   for (const char* kind : {"ENOSPC", "kill", "short"}) {
     for (const int nth : {3, 4, 6}) CHECK(survives(streams(), "worker", "write", kind, nth));
   }
@@ -367,8 +367,8 @@ TEST_CASE("a part that kills every worker is given up with its reason, the rest 
   Ran ran;
   {
     const Injection injection(parts(), "worker", poison);
-    ::setenv("MESHFARM_FAULT_FIRED", "", 1);  // it strikes again and again
-    ::setenv("MESHFARM_FAULT_BELOW", (stage + "/results").c_str(), 1);  // once there is a job
+    ::setenv("MESHFARM_FAULT_FIRED", "", 1);                            // strikes on every attempt
+    ::setenv("MESHFARM_FAULT_BELOW", (stage + "/results").c_str(), 1);  // only once there are jobs
     ran = parts().replay("run/stage", "run/out.ply");
   }
   CAPTURE(ran.err);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What triangles belong to, from the input to the output of real runs.
+// Triangle labels and materials, from input to output of real runs.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -34,7 +34,7 @@ Label slice_at(Vec3 p) {
   return p.z > 0.4 ? 2 : (p.z > -0.2 ? 1 : 0);
 }
 
-/// The lines of the input are jagged by its triangles' size.
+/// The material lines of the input are jagged, by about the size of its triangles.
 constexpr double k_jags = 0.03;
 
 double distance_to_line(double z) {
@@ -98,7 +98,7 @@ std::vector<Material> materials_of(const std::string& path) {
   return labels->materials;
 }
 
-/// Materials are numbered as they come in a file.
+/// Materials are numbered in the order of their first use in the file.
 void check_slices(const std::string& path, const std::vector<Material>& materials) {
   const auto source = open_mesh(path);
   REQUIRE(source->info().labels.has_value());
@@ -121,7 +121,7 @@ void check_slices(const std::string& path, const std::vector<Material>& material
     length_of_lines += length(b - a);
   }
   const double circles = 2 * 3.14159265 * (std::sqrt(1 - 0.16) + std::sqrt(1 - 0.04));
-  // Jags of single triangles that are left make the lines longer.
+  // Jags of single triangles that remain make the lines longer.
   CHECK(length_of_lines == doctest::Approx(circles).epsilon(0.15));
 }
 

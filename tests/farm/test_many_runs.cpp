@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Two runs and three replays of one stage at once, with workers of all kinds, while every file may
-// take its time: each must end, with its own bytes. MESHFARM_ROUNDS=50 asks for as many rounds; a
-// few are the quick answer.
+// Two runs and three replays of one stage at once, with workers of all kinds and random delays on
+// every file: each must end with its own bytes. MESHFARM_ROUNDS=50 runs that many rounds; the
+// default is a few, to be quick.
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -37,7 +37,7 @@ int rounds() {
   return wish == nullptr ? 2 : std::atoi(wish);
 }
 
-/// Every file below the stage takes its time, in the processes that are started meanwhile.
+/// Delays every file below the stage, in processes started during its lifetime.
 class Delays {
  public:
   explicit Delays(const std::string& below) {
@@ -52,7 +52,7 @@ class Delays {
   }
 };
 
-/// A stage of 12 parts, and what becomes of it at each of the ratios when nothing else goes on.
+/// A stage of 12 parts, and its undisturbed result at each of the ratios.
 class Bench : public FarmBench {
  public:
   Bench() : FarmBench("60000"), cut_(cut({"--parts", "12"})) {
@@ -91,7 +91,7 @@ Bench& bench() {
   return instance;
 }
 
-/// Why a worker of another build did not serve, as it says.
+/// The message with which a worker of another build refuses to serve.
 std::string refusal_of_another_build(const std::string& stage) {
   WorkerOptions options;
   options.algorithm = k_algorithm_version + 96;
@@ -107,7 +107,7 @@ std::string refusal_of_another_build(const std::string& stage) {
 struct Command {
   std::string name;
   std::vector<std::string> words;
-  std::string output = {};  // none: a worker
+  std::string output = {};  // empty for a worker
   std::string ratio = {};
 };
 
@@ -166,11 +166,11 @@ void play_round(int round) {
   for (std::size_t i = 0; i < commands.size(); ++i) {
     if (!commands[i].output.empty()) continue;
     CAPTURE(commands[i].name);
-    if (commands[i].name == "worker of a pool") processes[i].signal(SIGTERM);  // it looks on
+    if (commands[i].name == "worker of a pool") processes[i].signal(SIGTERM);  // it waits for more
     const int code = processes[i].wait(90);
     const std::string said = processes[i].err();
     CAPTURE(said);
-    // Where others had done all of its run's work before it was let in.
+    // Other workers may have finished its run before it was admitted.
     const bool late = code == 3 && said.find("over") != std::string::npos;
     CHECK((code == 0 || late));
   }

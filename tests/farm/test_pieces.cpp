@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Runs of the real program whose finish is made of jobs: whatever is killed, the same bytes.
+// Runs of the real program whose finish is split into jobs. Whatever is killed, the bytes are the
+// same.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -246,7 +247,7 @@ TEST_CASE("a damaged piece is made again") {
 
 namespace {
 
-/// A wavy sheet with so many balls over it, every fourth of them twice as large as the others.
+/// A wavy sheet with `balls` balls above it, every fourth one twice as large as the others.
 meshfarm::Mesh sheet_and_balls(int balls) {
   using meshfarm::Vec3;
   meshfarm::Mesh mesh = meshfarm::test::grid(120, 120);

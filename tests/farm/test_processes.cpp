@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Whole runs of the real program: ventilator, sink and workers as processes over tcp, killed,
-// stopped and started again. Every run must end with the same bytes.
+// Whole runs of the real program: ventilator, sink and workers are processes that talk over TCP,
+// and are killed, stopped and restarted. Every run must end with the same bytes.
 #include <algorithm>
 #include <chrono>
 #include <random>
@@ -52,7 +52,7 @@ Bench& bench() {
   return instance;
 }
 
-/// Sends bytes to a port and closes; whether anyone listens does not matter.
+/// Sends bytes to a port and closes; it does not matter whether anyone listens.
 void send_bytes(std::uint16_t port, const std::string& bytes) {
   const int fd = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -65,7 +65,7 @@ void send_bytes(std::uint16_t port, const std::string& bytes) {
   ::close(fd);
 }
 
-/// The children of a process, by what their command lines begin with after the program's name.
+/// The children of a process whose command line has `command` right after the program's name.
 std::vector<pid_t> children_of(pid_t parent, const std::string& command) {
   const std::string self = std::to_string(parent);
   std::ifstream list("/proc/" + self + "/task/" + self + "/children");
@@ -96,7 +96,7 @@ TEST_CASE("1, 2 and 5 workers make the same bytes") {
 
 TEST_CASE("a cut, ventilator and sink, and two workers started by hand make the same bytes") {
   const std::string stage = bench().cut();
-  Process one = bench().worker(stage);  // a worker may come before anyone else
+  Process one = bench().worker(stage);  // a worker may be started before all others
   Process run =
       bench().start({"run", stage, "--ratio", "0.02", "-o", stage + ".ply", "--bind", "127.0.0.1"});
   Process two = bench().worker(stage);
@@ -184,7 +184,7 @@ TEST_CASE("a ventilator started again when the sink has ended sees that the run 
   Process sink = bench().start({"sink", stage, "--ratio", "0.02", "--bind", "127.0.0.1", "-o",
                                 stage + ".ply", "--wait", "1"});
   Process worker = bench().worker(stage);
-  // The sink has all it needs, and the ventilator is gone before it hears of the end.
+  // The sink has everything it needs, and the ventilator is killed before it hears of the end.
   CHECK(meshfarm::test::wait_until([&] { return results_in(stage) == 24; }));
   ventilator.signal(SIGSTOP);
   CHECK(meshfarm::test::wait_until([&] { return fs::exists(stage + ".ply"); }));
@@ -200,7 +200,7 @@ TEST_CASE("a ventilator started again when the sink has ended sees that the run 
 TEST_CASE("a ventilator without a sink does not end as if there were a result") {
   const std::string stage = bench().cut();
   REQUIRE(bench().meshfarm({"replay", stage, "--ratio", "0.02", "-o", stage + ".ply"}).code == 0);
-  // That run is over: what it made is no result of this one.
+  // The earlier run is over: its results do not count for this one.
   Process ventilator =
       bench().start({"ventilator", stage, "--ratio", "0.02", "--bind", "127.0.0.1", "--wait", "1"});
   CHECK(ventilator.wait(3) == -1000);
@@ -220,7 +220,7 @@ TEST_CASE("everything killed, everything started again: only what was not accept
   const Ran ran = bench().meshfarm({"replay", stage, "-o", stage + ".ply", "--ratio", "0.02"});
   CHECK(ran.code == 0);
   bench().check_result(stage + ".ply");
-  const std::size_t journalled_before = before - 5;  // those in the worker's hands may be lost
+  const std::size_t journalled_before = before - 5;  // those that the worker held may be lost
   CHECK(results_in(stage) <= 24 + before - journalled_before);
 }
 
@@ -360,7 +360,7 @@ TEST_CASE("results damaged while no sink is there are made again, whenever sinks
     file.seekp(200);
     file.put('\x55');
   }
-  // One that has just begun to look, and one that may be taking back what is damaged.
+  // Killed once when it has just begun to look, once when it may be taking back damaged results.
   for (const int life_ms : {30, 250}) {
     sink = bench().sink(stage);
     std::this_thread::sleep_for(std::chrono::milliseconds(life_ms));
@@ -430,7 +430,7 @@ TEST_CASE("clean leaves what a killed run needs, and takes what finished ones ma
   CHECK(wait_for_results(stage, finished + 8));
   run.signal(SIGKILL);
   CHECK(run.wait() == -SIGKILL);
-  // Its processes end with it, in a while.
+  // Its processes end shortly after it.
   const auto kept_for_sink = [&] {
     return bench().meshfarm({"clean", stage, "--dry-run"}).out.find("a sink is at work") !=
            std::string::npos;
@@ -447,7 +447,7 @@ TEST_CASE("clean leaves what a killed run needs, and takes what finished ones ma
   bench().check_result(stage + ".ply");
   CHECK(bench().meshfarm({"clean", stage}).code == 0);
   CHECK(results_in(stage) == 0);
-  CHECK(replay("0.02").code == 0);  // all is made again
+  CHECK(replay("0.02").code == 0);  // everything is made again
   bench().check_result(stage + ".ply");
 }
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// One process's mount of the stage is sick for a while, and the others' are not
-// (support/fault_shim.cpp): nothing below a folder is found, opened or read. What is known to be
-// there is waited for, nobody is blamed, and the bytes are the same.
+// One process's mount of the stage is sick for a while, while the others' mounts are fine
+// (support/fault_shim.cpp): nothing below a folder can be found, opened or read. Files that are
+// known to exist are waited for, nobody is blamed, and the bytes are the same.
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The environment of the processes that are started meanwhile.
+/// The environment of the processes started during its lifetime.
 class Environment {
  public:
   Environment(std::vector<std::pair<std::string, std::string>> variables)
@@ -68,7 +68,7 @@ std::size_t count_of(const std::string& text, const std::string& word) {
   return count;
 }
 
-/// All that the traces of a stage tell.
+/// The text of all traces of a stage.
 std::string traces_of(const std::string& stage) {
   std::string all;
   for (const auto& entry : fs::directory_iterator(stage + "/log")) {
@@ -135,7 +135,7 @@ TEST_CASE("a sink whose mount stays sick asks a second reader, and the file's ho
   Bench bench;
   const std::string output = bench.path("out.ply");
   const std::string stage = bench.stage();
-  // Nothing is known of this target.
+  // No results exist yet for this target.
   const std::string quiet = bench.path("quiet7.ply");
   const std::string copy = bench.path("copy");
   fs::copy(stage, copy, fs::copy_options::recursive);
@@ -143,7 +143,7 @@ TEST_CASE("a sink whose mount stays sick asks a second reader, and the file's ho
 
   Process ventilator =
       bench.start_as("server", {"ventilator", stage, "--ratio", "0.07", "--bind", "127.0.0.1"});
-  // One that can do no job, being too small: it only reads for the sink.
+  // A worker with too little memory for any job: it only reads for the sink.
   Process reader = bench.start_as("reader", {"worker", stage, "--memory", "1K"},
                                   {{"MESHFARM_FAULT", "read:short:1"},
                                    {"MESHFARM_FAULT_BELOW", stage + "/results"},
@@ -153,7 +153,7 @@ TEST_CASE("a sink whose mount stays sick asks a second reader, and the file's ho
   Process sink = bench.start_as(
       "server", {"sink", stage, "--ratio", "0.07", "-o", output, "--bind", "127.0.0.1"},
       {{"MESHFARM_FAULT_BELOW", stage + "/results"}, {"MESHFARM_FAULT_SICK", bench.sick()}});
-  // Longer than a reader's patience.
+  // The sink's mount stays sick for longer than a reader's patience.
   CHECK(wait_until([&] { return fs::exists(bench.path("has_read")); }, 150));
   CHECK(std::chrono::steady_clock::now() - begin > std::chrono::seconds(60));
   fs::remove(bench.sick());

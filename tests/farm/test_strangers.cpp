@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A run of the real processes while strangers, who reach its ports but have not its keys, do what
-// they can: the run ends with the same bytes, they are counted, and no memory goes to them.
+// A run of the real processes under attack by strangers who reach its ports but do not have its
+// keys. The run ends with the same bytes, the strangers are counted, and they cost no memory.
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -37,7 +37,7 @@ namespace {
 constexpr int k_idle_connections = 500;
 constexpr std::size_t k_flood_bytes = 80'000'000;
 #ifdef MESHFARM_SANITIZED
-constexpr std::uint64_t k_most_growth_kb = 102'400;  // sanitizers take memory of their own
+constexpr std::uint64_t k_most_growth_kb = 102'400;  // sanitizers need memory of their own
 #else
 constexpr std::uint64_t k_most_growth_kb = 10'240;
 #endif
@@ -61,7 +61,7 @@ Fd connect_raw(std::uint16_t port) {
   return fd;
 }
 
-/// As much as the other side takes: it may hang up at any byte, or stop to read.
+/// Sends as much as the other side takes, which may hang up at any byte or stop reading.
 std::size_t send_raw(const Fd& fd, std::string_view bytes) {
   std::size_t sent = 0;
   while (sent < bytes.size()) {
@@ -100,7 +100,7 @@ std::vector<std::string> garbage() {
   return list;
 }
 
-/// A multipart message without an end, from somebody who does not wait for an answer.
+/// An endless multipart message, sent without waiting for an answer.
 void flood(std::uint16_t port) {
   const Fd fd = connect_raw(port);
   std::string bytes =
@@ -112,13 +112,13 @@ void flood(std::uint16_t port) {
   }
 }
 
-/// ZeroMQ clients that speak our protocol but cannot prove that they are of the run.
+/// ZeroMQ clients that speak our protocol but cannot prove that they belong to the run.
 class Impostors {
  public:
   void attack(const std::string& address, const std::string& server_key) {
     Keys wrong = make_run_keys();
     visit(address, wrong);
-    wrong->server_public = server_key;  // not a secret: it stands in the endpoint
+    wrong->server_public = server_key;  // not a secret: the endpoint file contains it
     visit(address, wrong);
     visit(address, std::nullopt);
   }
@@ -180,7 +180,7 @@ TEST_CASE("strangers are refused and counted, cost no memory, and the run goes o
     words.insert(words.begin() + 1, run.begin(), run.end());
     return Process(words, path(log));
   };
-  // Heartbeats so long that a worker which stands still meanwhile is not missed.
+  // Heartbeats are long enough that a worker which is stopped for a while is not declared lost.
   Process ventilator = start({"ventilator", "--heartbeat-ms", "20000"}, "ventilator");
   Process sink = start({"sink", "-o", path("out.ply")}, "sink");
   Process worker({"worker", stage}, path("worker"));
@@ -209,7 +209,7 @@ TEST_CASE("strangers are refused and counted, cost no memory, and the run goes o
     for (const std::string& bytes : blobs) send_raw(connect_raw(port), bytes);
     flood(port);
   }
-  // Who has not said in five seconds who it is is shown the door.
+  // Connections that have not identified themselves within five seconds are closed.
   CHECK(wait_until(
       [&] {
         return std::all_of(idle.begin(), idle.end(), [](const Fd& fd) {
@@ -225,7 +225,7 @@ TEST_CASE("strangers are refused and counted, cost no memory, and the run goes o
   CHECK(sink.wait() == 0);
   CHECK(ventilator.wait() == 0);
   CHECK(worker.wait() == 0);
-  const std::uint64_t each = blobs.size() + 1 + 6 + k_idle_connections / 3;  // at every port
+  const std::uint64_t each = blobs.size() + 1 + 6 + k_idle_connections / 3;  // at each port
   CHECK(refused_in(ventilator.err()) >= 2 * each);
   CHECK(refused_in(sink.err()) >= each);
   REQUIRE(run_meshfarm({"simplify", path("mesh.ply"), "--parts", "16", "--ratio", "0.02", "-o",

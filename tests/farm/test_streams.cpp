@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The stream scheme with the real program's processes. The farm is the same as for the cut, whose
-// tests are harder on it; here it is the streams, their jobs and their damage that count.
+// The stream scheme with the real program's processes. The farm itself is tested harder with the
+// cut; these tests are about the streams, their jobs and their damage.
 #include <fstream>
 
 #include <doctest/doctest.h>
@@ -35,7 +35,7 @@ class Bench : public FarmBench {
             "stream",   "--parts", "6",  "--window", "20000",   "--workers", workers};
   }
   std::string streams() { return cut({"--scheme", "stream", "--parts", "6", "--window", "20000"}); }
-  /// The same, but the farm is to sort them.
+  /// The same, but sorted by the farm.
   std::string slabs() {
     return cut({"--scheme", "stream", "--sort", "farm", "--parts", "6", "--window", "20000"});
   }
@@ -44,7 +44,7 @@ class Bench : public FarmBench {
   }
 };
 
-/// How many files of a stage's folder hold a stream.
+/// The number of files in a stage's folder that hold a stream.
 std::size_t streams_in(const std::string& stage, const char* folder) {
   std::size_t count = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(stage) / folder)) {
@@ -113,7 +113,7 @@ TEST_CASE("streams: composed as a tree, by any number of workers and through kil
   };
   const std::string first = bench().streams();
   REQUIRE(bench().meshfarm(composed(first, "2")).code == 0);
-  CHECK(results_in(first) >= 6 + 6 + 2);  // six are joined to two or fewer
+  CHECK(results_in(first) >= 6 + 6 + 2);  // the six are joined to at most two
   const std::string expected = read_text(first + ".ply");
   CHECK(expected.size() == bench().expected().size());
   for (const char* workers : {"1", "5"}) {
@@ -155,7 +155,7 @@ TEST_CASE("streams: killed while the farm sorts and samples, a run goes on, and 
   const std::vector<std::string> other = {"replay",         stage,     "-o",
                                           stage + ".5.ply", "--ratio", "0.05"};
   CHECK(bench().meshfarm(other).code == 0);
-  // What a second attempt made may have gone since; nothing has come.
+  // Outputs of second attempts may have been removed since; none may have been added.
   CHECK(streams_in(stage, "results") <= sorted);
 }
 

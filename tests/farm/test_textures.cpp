@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What textures become, from the input to the output of real runs.
+// Textures, from input to output of real runs.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -70,7 +70,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// The greatest of what a summary tells of red, green and blue.
+/// The greatest error of red, green and blue in a summary.
 double errors_of_channels(const std::string& summary) {
   static const std::regex line(R"(channels +red ([^ ,]+), green ([^ ,]+), blue ([^ ,]+) )");
   std::smatch found;
@@ -78,7 +78,7 @@ double errors_of_channels(const std::string& summary) {
   return std::max({std::stod(found[1]), std::stod(found[2]), std::stod(found[3])});
 }
 
-/// Whether all of its vertices are of that one texel.
+/// Whether all vertices have the colour of that one texel.
 bool is_orange(const std::string& path) {
   const auto source = open_mesh(path);
   if (source->info().channels.size() != 3) return false;
@@ -119,7 +119,7 @@ TEST_CASE("a textured OBJ comes back coloured, by either scheme and as any forma
   CAPTURE(compared.out);
   const std::string psnr = "colours A to B   PSNR ";
   const std::size_t at = compared.out.find(psnr);
-  // But for the rounding of floats.
+  // Equal up to the rounding of floats.
   CHECK((has(compared.out, "colours A to B   exact\n") ||
          (at != std::string::npos && std::stod(compared.out.substr(at + psnr.size())) > 120)));
   const Ran info = model.run({"info", model.path("m.obj"), "--no-topology"});

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Texture coordinates and pictures, kept and made anew, from the input to the output of real runs.
+// Texture coordinates and pictures, both kept and made anew, from input to output of real runs.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,7 +30,7 @@ constexpr std::uint32_t k_columns = 60;
 constexpr std::uint32_t k_side = 256;
 const double k_turn = 2 * std::acos(-1.0);
 
-/// The angles of a point of the torus, as parts of a turn.
+/// The angles of a point on the torus, as fractions of a turn.
 std::array<double, 2> angles_of(Vec3 p) {
   const double u = std::atan2(p.y, p.x) / k_turn;
   const double v = std::atan2(p.z, std::sqrt(p.x * p.x + p.y * p.y) - 1) / k_turn;
@@ -42,7 +42,7 @@ double apart(double a, double b) {
   return std::min(d, 1 - d);
 }
 
-/// The levels that the picture has at these angles.
+/// The levels of the picture at these angles.
 std::array<double, 3> levels_at(double u, double v) {
   return {0.5 + 0.4 * std::sin(k_turn * u), 0.5 + 0.4 * std::cos(k_turn * v),
           0.5 + 0.4 * std::sin(k_turn * (u + v))};
@@ -60,8 +60,8 @@ std::string picture() {
   return encoded_picture(k_side, std::move(texels), PictureCoding::png);
 }
 
-/// A torus with the whole picture round it: one chart, whose sides meet in two rings. Or so many
-/// patches a ring, each a chart: the picture comes again beyond its sides.
+/// A torus wrapped in the whole picture: one chart, whose sides meet in two rings. Or with
+/// `patches` patches per ring, each a chart: then the picture is repeated beyond its sides.
 Mesh textured_torus(std::uint32_t patches = 0) {
   Mesh mesh = test::torus(k_rows, k_columns);
   for (Vec3& p : mesh.positions) p = rounded(p, PositionType::float32);
@@ -90,7 +90,7 @@ class Bench {
     write_mesh(path("in.obj"), textured_torus(patches), PositionType::float32, {}, {},
                LabelMeaning{"material", {material}}, pictures);
   }
-  /// Instead of the torus.
+  /// Replaces the torus as input.
   void write(const Mesh& mesh, const LabelMeaning& materials, const PictureFiles& pictures) const {
     write_mesh(path("in.obj"), mesh, PositionType::float32, {}, {}, materials, pictures);
   }
@@ -104,7 +104,7 @@ class Bench {
     words.insert(words.end(), more.begin(), more.end());
     return (*this)(words);
   }
-  /// All files that a result consists of.
+  /// The bytes of all files of a result.
   std::string bytes_of(const std::string& output) const {
     std::string all;
     std::vector<std::filesystem::path> files;
@@ -140,7 +140,7 @@ Read read_textured(const std::string& path) {
   return read;
 }
 
-/// Texture coordinates are those of the places; the seams are where they were.
+/// Texture coordinates match the positions, and the seams are where they were.
 void check_kept(const std::string& path, double most = 0.02) {
   const auto [info, mesh] = read_textured(path);
   CHECK(info.pictures.load(0) == picture());
@@ -151,7 +151,7 @@ void check_kept(const std::string& path, double most = 0.02) {
       const auto [u, v] = angles_of(mesh.positions[mesh.triangles[i][k]]);
       worst = std::max({worst, apart(u, static_cast<double>(uvs[k][0])),
                         apart(v, static_cast<double>(uvs[k][1]))});
-      // No triangle goes from one side of the picture to the other.
+      // No triangle spans the picture from one side to the other.
       CHECK(std::abs(uvs[k][0] - uvs[(k + 1) % 3][0]) < 0.5F);
       CHECK(std::abs(uvs[k][1] - uvs[(k + 1) % 3][1]) < 0.5F);
     }
@@ -159,7 +159,7 @@ void check_kept(const std::string& path, double most = 0.02) {
   CHECK(worst < most);
 }
 
-/// At the corners and centres of all triangles, from the root of the mean squared error.
+/// PSNR over the corners and centres of all triangles.
 double psnr_of(const Read& read) {
   const MaterialColours colours(*read.info.labels, read.info.pictures, {.name = "result"});
   double sum = 0;
@@ -300,8 +300,8 @@ namespace {
 
 constexpr std::uint32_t k_width = 60;
 
-/// A rough roof over a square whose ridge goes along x = k_width / 2, with the picture seen from
-/// above: in two charts, which meet at y = k_width / 2.
+/// A rough roof over a square, with its ridge along x = k_width / 2. The picture is projected from
+/// above, in two charts that meet at y = k_width / 2.
 Mesh textured_roof() {
   Mesh mesh = test::grid(k_width, k_width);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -328,7 +328,7 @@ void write_roof(const Bench& bench) {
               {{"tiles.png"}, [](std::size_t) { return picture(); }});
 }
 
-/// Texture coordinates are those of the places, of the chart that the triangle is in.
+/// Texture coordinates match the positions, in the chart of the triangle.
 void check_roof(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     double y = 0;

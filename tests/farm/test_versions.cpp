@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A stage in which another version of the algorithm has worked before.
+// A stage that contains results of another version of the algorithm.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -43,8 +43,8 @@ class Bench : public FarmBench {
   std::string cut_;
 };
 
-/// Journals results of all parts as that version would have, each part's being another's: nobody
-/// who uses one makes the mesh that is expected.
+/// Journals results of all parts as that version would, but each is another part's result: whoever
+/// uses one does not make the expected mesh.
 void work_with_version(const std::string& folder, std::uint32_t version) {
   const Stage stage = Stage::open(folder);
   const Manifest manifest = decode_manifest(stage.read(ManifestName{}), folder);
@@ -74,7 +74,7 @@ TEST_CASE("results of another version of the algorithm are made again") {
     CHECK(bench.replay(stage).code == 0);
     bench.check_result(stage + ".ply");
   }
-  // Those of this one are used, and do not fit each other.
+  // Results of this version are used, and do not fit each other.
   const std::string stage = bench.copied_stage("stage of this version");
   work_with_version(stage, k_algorithm_version);
   const bool made_again =
