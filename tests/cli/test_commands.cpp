@@ -51,7 +51,7 @@ TEST_CASE("a channel that the input has not, or no input, leaves no stage behind
   CHECK_FALSE(fs::exists(output + ".stage"));
   CHECK(shell({"cut", shell.file("bad.ply", "ply\n"), "--stage", stage}).code == 1);
   CHECK_FALSE(fs::exists(stage));
-  // With a cut that is finished the channels are of the stage.
+  // Once a cut is complete, the channels are those of the stage.
   REQUIRE(shell({"cut", cube, "--stage", stage}).code == 0);
   CHECK(shell({"cut", cube, "--stage", stage}).code == 0);
   CHECK(shell({"cut", cube, "--stage", stage, "--attributes", "x"}).code == 1);
@@ -142,7 +142,7 @@ TEST_CASE("a run is traced: status, report and simulate tell of it") {
   CHECK(shell({"simulate", stage}).code == 1);  // no trace yet
   REQUIRE(shell({"replay", stage, "--ratio", "0.1", "-o", shell.path("o.ply")}).code == 0);
 
-  const Ran status = shell({"status", stage, "--watch"});  // over, so it looks once
+  const Ran status = shell({"status", stage, "--watch"});  // the run is over, so it looks once
   CHECK(status.code == 0);
   CHECK(has(status.out, "phase            done"));
   CHECK(has(status.out, "8 of 8 done"));
@@ -375,7 +375,7 @@ TEST_CASE("the example config files are understood") {
              conf + "simplify.conf", "--ratio", "0.5", "--stage", shell.path("s"), "--keep-stage"});
   CAPTURE(ran.err);
   CHECK(ran.code == 0);
-  // Without a sink it waits until it is stopped: what matters is that it got that far.
+  // Without a sink it waits until it is stopped: it only matters that it got that far.
   test::Process ventilator(
       {"ventilator", shell.path("s"), "--bind", "127.0.0.1", "--config", conf + "ventilator.conf"},
       shell.path("ventilator"));
@@ -477,7 +477,7 @@ TEST_CASE("one mesh has one result, as whatever format it comes and goes") {
   CHECK(simplified("t.off", "from-off.ply") == result);
   CHECK(simplified("t.glb", "from-glb.ply") == result);
   CHECK(simplified("t.gltf", "from-gltf.ply") == result);
-  // A soup has other vertices, and so other parts.
+  // A soup has different vertices, and so different parts.
   const std::string from_soup = simplified("t.stl", "from-stl.ply");
   CHECK(from_soup == simplified("soup.ply", "from-soup.ply"));
   CHECK(has(shell({"info", path("from-stl.ply")}).out, "triangles        2,000\n"));
@@ -519,7 +519,7 @@ TEST_CASE("info and compare weld, and hold no more than they are given") {
   CHECK(info.out.find("as it is: 2 components") > welded);
   CHECK(info.out.find("as it is: 2 components") != std::string::npos);
   CHECK(has(shell({"info", seam, "--json"}).out, "\"topology_not_welded\""));
-  // In many slabs, by way of scratch files.
+  // In many slabs, through scratch files.
   const Ran little = shell({"info", torus, "--memory", "100K"});
   CHECK(has(little.out, "1 component, 0 border edges, 0 non-manifold edges"));
   CHECK_FALSE(has(little.out, "welded"));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What `meshfarm compare` tells of two files.
+// What `meshfarm compare` reports about two files.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -27,7 +27,7 @@ const std::vector<Channel> k_channels = {{"red", ChannelType::uint8, ChannelRole
                                          {"nz", ChannelType::float32, ChannelRole::normal},
                                          {"heat", ChannelType::float32, ChannelRole::quality}};
 
-/// A vertex's colour grows linearly by 4 levels a unit.
+/// A vertex's colour grows linearly, by 4 levels per unit.
 std::vector<float> values_at(Vec3 p) {
   const auto level = static_cast<float>(100 + 4 * p.x);
   return {level, level, static_cast<float>(4 * p.y), 0, 0, 1, static_cast<float>(p.x / 3)};
@@ -36,7 +36,7 @@ std::vector<float> values_at(Vec3 p) {
 class Bench {
  public:
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
-  /// A sheet of 24 x 24 units with values, cut into squares of this width.
+  /// A sheet of 24 x 24 units with values, in squares of this width.
   void write(const std::string& name, std::uint32_t width,
              const std::function<std::vector<float>(Vec3)>& value) const {
     Mesh mesh = test::grid(24 / width, 24 / width);
@@ -159,7 +159,7 @@ TEST_CASE("compare has not a word about channels where there are none in both") 
   CHECK_FALSE(has(none.out, "colours"));
   CHECK_FALSE(has(none.out, "channels"));
   CHECK_FALSE(has(none.out, "only"));
-  // No need of the memory that channels would take.
+  // Channels that are not compared need no memory.
   const Ran little = bench.compare("b.stl", "a.ply", {"--memory", "10K"});
   CHECK(little.code == 0);
   CHECK_FALSE(has(little.out, "not compared"));
@@ -174,7 +174,7 @@ TEST_CASE("compare says in a line that channels do not fit into its memory, and 
   };
   const Ran full = compare_in("1M");
   CHECK(has(full.out, "PSNR"));
-  // Neither the distances in memory nor those of slabs need the channels.
+  // The distances, in memory or in slabs, do not need the channels.
   for (const std::string memory : {"130K", "30K"}) {
     CAPTURE(memory);
     const Ran little = compare_in(memory);
@@ -195,7 +195,7 @@ TEST_CASE("compare says in a line that channels do not fit into its memory, and 
 
 namespace {
 
-/// A sheet of 24 x 24 units whose label is 5 left of x, and 9 on the right.
+/// A sheet of 24 x 24 units with label 5 left of x, and 9 right of it.
 Mesh two_regions(double x) {
   Mesh mesh = test::grid(24, 24);
   for (const Triangle& t : mesh.triangles) {
@@ -222,7 +222,7 @@ TEST_CASE("compare tells on which share of the area the labels differ") {
   CHECK(number_after(json.out, "\"other_b_to_a\": ") == doctest::Approx(0.125).epsilon(0.02));
   CHECK(has(json.out, "\"name_a\": \"region\""));
   CHECK(has(json.out, "\"labels_not_compared\": null"));
-  // The same by names, in another order and beside numbers.
+  // The same with label names, in another order, compared with numbers.
   for (const std::string name : {"b.obj", "b.glb"}) {
     CAPTURE(name);
     REQUIRE(bench.run({"convert", bench.path("b.ply"), bench.path(name), "-q"}).code == 0);
@@ -248,7 +248,7 @@ TEST_CASE("compare leaves labels out where one has none, or they do not fit into
 
 namespace {
 
-/// Two closed spheres of 1,280 triangles each, so far from each other.
+/// Two closed spheres of 1,280 triangles each, `apart` from each other.
 Mesh two_spheres(double apart) {
   Mesh mesh = test::icosphere(3);
   Mesh other = test::icosphere(3);
@@ -349,7 +349,7 @@ TEST_CASE("compare writes a map of the distances, with a number and a colour at 
 
 TEST_CASE("compare bounds the greatest distances over all points, where that is asked for") {
   Bench bench;
-  // A slot that the lid's vertices do not show: the lid is 3 from the sheet in its middle.
+  // A slot that the lid's vertices do not reveal: in its middle the lid is 3 from the sheet.
   Mesh sheet = test::grid(24, 24);
   std::erase_if(sheet.triangles, [&](const Triangle& t) {
     return std::all_of(t.begin(), t.end(), [&](std::uint32_t v) {
@@ -358,7 +358,7 @@ TEST_CASE("compare bounds the greatest distances over all points, where that is 
   });
   Mesh lid = test::grid(1, 1);
   for (Vec3& p : lid.positions) p = p * 24;
-  // What is no surface is not far from anything.
+  // A degenerate triangle has no surface, so it is not far from anything.
   lid.positions.push_back({0, 0, 100});
   lid.triangles.push_back({4, 4, 4});
   write_mesh(bench.path("a.ply"), sheet, PositionType::float32);
@@ -370,7 +370,7 @@ TEST_CASE("compare bounds the greatest distances over all points, where that is 
   const std::string bounds = json.out.substr(json.out.find("\"certified\": {"));
   const std::string back = bounds.substr(bounds.find("\"b_to_a\""));
   const double diagonal = 24 * std::sqrt(2.0);
-  CHECK(number_after(bounds, "\"at_most\": ") < 2e-5);  // A to B stands first
+  CHECK(number_after(bounds, "\"at_most\": ") < 2e-5);  // A to B comes first
   CHECK(number_after(back, "\"at_least\": ") <= 3 / diagonal);
   CHECK(number_after(back, "\"at_most\": ") >= 3 / diagonal);
   CHECK(number_after(back, "\"at_most\": ") <= 3.04 / diagonal);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What is said of the attributes of a mesh, and of what is left out of it.
+// The messages about a mesh's attributes, and about those that are left out.
 #include <array>
 #include <filesystem>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// 'meshfarm doctor' on folders of this machine; on real NFS mounts it is tried in tests/lab.
+// 'meshfarm doctor' on folders of this machine; tests/lab tries it on real NFS mounts.
 #include <doctest/doctest.h>
 
 #include "support/process.hpp"

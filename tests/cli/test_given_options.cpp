@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Options that change nothing: a warning on the command line, nothing in a config file.
+// Options without effect: a warning on the command line, nothing in a config file.
 #include <doctest/doctest.h>
 
 #include "support/shell.hpp"

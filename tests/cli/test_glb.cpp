@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What commands write as GLB.
+// GLB files written by the commands.
 #include <doctest/doctest.h>
 
 #include "support/process.hpp"

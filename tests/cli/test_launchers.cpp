@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The launchers, and what they ask the program for. How they do on real hosts is seen in tests/lab.
+// The launchers, and what they ask the program for. tests/lab runs them on real hosts.
 #include <cstdlib>
 
 #include <doctest/doctest.h>

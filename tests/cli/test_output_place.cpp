@@ -111,7 +111,7 @@ TEST_CASE("what cannot be a file to write is refused before the work") {
 
 TEST_CASE("an input that turns out to be unfit leaves no stage that was not there") {
   Shell shell;
-  // The header is in order, and a vertex is not.
+  // The header is valid, but a vertex is not.
   const std::string bad =
       shell.file("bad.ply",
                  "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
@@ -124,7 +124,7 @@ TEST_CASE("an input that turns out to be unfit leaves no stage that was not ther
   CHECK_FALSE(fs::exists(stage));
   CHECK(shell({"cut", shell.cube(), "--stage", stage, "--cut", "farm"}).code == 2);  // it is ascii
   CHECK_FALSE(fs::exists(stage));
-  // A folder that was there is somebody's.
+  // A folder that existed before belongs to somebody.
   fs::create_directory(stage);
   shell.file("s/mine.txt", "x");
   CHECK(shell({"cut", bad, "--stage", stage}).code == 1);

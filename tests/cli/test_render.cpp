@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The command that draws pictures: its options, and what it says.
+// The command that draws pictures: its options and messages.
 #include <filesystem>
 #include <string>
 #include <vector>

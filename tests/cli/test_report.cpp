@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The page of a run: that it is there, is whole, and loads nothing.
+// The page of a run: it exists, is complete, and loads nothing.
 #include <filesystem>
 #include <regex>
 #include <string>
@@ -26,7 +26,7 @@ std::size_t count_of(const std::string& text, const std::string& what) {
   return count;
 }
 
-/// But for its times and its timeline.
+/// The page without its times and its timeline.
 std::string without_times(const std::string& page) {
   const std::size_t time = page.find("<h2>Time</h2>");
   const std::size_t again = page.find("<h2>Again</h2>");

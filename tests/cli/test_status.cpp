@@ -59,7 +59,7 @@ class OnTerminal {
     REQUIRE(::tcgetattr(slave_, &now) == 0);
     return (now.c_lflag & ECHO) != 0;
   }
-  /// Whether the screen came to have `what`; takes all until then.
+  /// Whether `what` appears on the screen; reads all output up to then.
   bool shows(const std::string& what) {
     ::fcntl(master_, F_SETFL, O_NONBLOCK);
     return wait_until(
@@ -171,7 +171,7 @@ TEST_CASE("status --watch gives the terminal back whoever ends or stops it") {
 
   OnTerminal watch({"status", stage, "--watch"});
   CHECK(watch.shows("none yet"));
-  watch.press('\x1a');  // SIGTSTP; its session has nobody who would let it go on, so it does itself
+  watch.press('\x1a');  // SIGTSTP; nobody in its session would continue it, so it continues itself
   CHECK(watch.shows(k_leave));
   CHECK(watch.shows(k_enter));
   ::kill(watch.pid(), SIGTERM);

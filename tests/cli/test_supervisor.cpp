@@ -17,8 +17,8 @@
 #include "cli/supervisor.hpp"
 #include "support/temp_folder.hpp"
 
-// The supervisor starts this program again, as a ventilator, a sink or a worker: then it does what
-// the words after the name tell it to.
+// The supervisor starts this program again as ventilator, sink or worker: it then acts as the words
+// after the name say.
 
 using namespace meshfarm;
 
@@ -36,12 +36,11 @@ void append_to(const fs::path& path, char c) {
 }
 
 /// The words of a child: its name, the file that gets a letter at each start, and what it does at
-/// its first start, its second and so on; at all further ones what it did at the last that is told.
+/// its first start, its second and so on; any further start repeats the last one given.
 ///   done, left, bad   exits with 0, 3, 1
 ///   killed            is ended by a signal
 ///   waits             until SIGTERM ends it, or for a minute
-///   NAME:N            exits with 0 once the child of that name was started N times, or after a
-///                     minute
+///   NAME:N            exits with 0 once the child NAME was started N times, or after a minute
 ///   dies              is ended by a signal two seconds after the first start of worker0
 std::vector<std::string> child(const std::string& name, const fs::path& starts,
                                const std::vector<std::string>& acts) {
