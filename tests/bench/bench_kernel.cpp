@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The inner loops on generated meshes, one thread unless told otherwise; items are triangles, or
-// vertices where a line says so.
+// The inner loops on generated meshes, on one thread unless stated otherwise. Items are triangles,
+// or vertices where stated.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -36,7 +36,7 @@ Mesh torus(std::int64_t triangles) {
   return in_memory(BumpyTorus(static_cast<std::uint64_t>(triangles)));
 }
 
-/// A folder of our own, gone at the end.
+/// A temporary folder, removed at the end.
 class WorkFolder {
  public:
   WorkFolder() {
@@ -68,7 +68,7 @@ Appearance waves(Vec3 p) {
   return {wave(p.x), wave(p.y), wave(p.z), 0};
 }
 
-/// Arguments: triangles, percent of them that are kept, whether they are coloured.
+/// Arguments: triangles, percentage of triangles kept, whether they are coloured.
 void simplify(benchmark::State& state) {
   Mesh mesh = torus(state.range(0));
   SimplifyOptions options;
@@ -94,7 +94,7 @@ BENCHMARK(simplify)
     ->ArgsProduct({{50'000, 200'000, 1'000'000}, {10, 1}, {0, 1}})
     ->Unit(benchmark::kMillisecond);
 
-/// Vertices of which there are no twins, and six of each.
+/// Vertices without twins, and six copies of each.
 void weld_distinct(benchmark::State& state) {
   const Mesh mesh = torus(state.range(0));
   for (auto _ : state) benchmark::DoNotOptimize(weld(mesh.positions).merged);
@@ -170,7 +170,7 @@ void scan_ply_ascii(benchmark::State& state) {
 }
 BENCHMARK(scan_ply_ascii)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
 
-/// Arguments: triangles, threads (0: one a core). CPU is that of all threads.
+/// Arguments: triangles, threads (0: one per core). CPU time is that of all threads.
 void cut(benchmark::State& state) {
   const WorkFolder folder;
   const auto path = folder.path() / "torus.ply";

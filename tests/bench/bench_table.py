@@ -37,7 +37,7 @@ class Row:
         self.cpu_all = [run["cpu_s"] for run in timed]
         self.cpu = statistics.median(self.cpu_all)
         self.wall = statistics.median(run["wall_s"] for run in timed)
-        # A peak that falls between two looks is missed, so the largest seen is the nearest.
+        # A peak between two samples is missed, so the largest one seen is the closest.
         self.rss = max(tree["peak_anon_mb"] for tree in trees)
         self.title = f"{said[0]['tool']} {said[0]['version']}" if said else "meshfarm simplify"
         if self.whole:
@@ -47,7 +47,7 @@ class Row:
         self.rms = max(way["rms"] for way in both_ways)
         self.max = max(way["max"] for way in both_ways)
         self.topology = comparison["topology_b"]
-        # Of colours that do not differ at all there is none.
+        # Colours without any difference have no PSNR.
         noise = [way["psnr"] for channel in comparison["channels"]
                  for way in (channel["a_to_b"], channel["b_to_a"]) if way.get("psnr") is not None]
         self.psnr = min(noise, default=None)

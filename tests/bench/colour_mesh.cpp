@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Colours the vertices of a mesh by where they are: colour_mesh INPUT OUTPUT.ply noise|stripes
+// Colours the vertices of a mesh by their position: colour_mesh INPUT OUTPUT.ply noise|stripes
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,9 +20,9 @@ namespace meshfarm::bench {
 namespace {
 
 using Colour = std::array<double, 3>;
-using Colouring = Colour (*)(Vec3);  // of points in the unit cube, components from 0 to 1
+using Colouring = Colour (*)(Vec3);  // point in the unit cube; components from 0 to 1
 
-/// From 0 to 1, another one for each corner of a grid and each seed.
+/// From 0 to 1, different for each grid corner and seed.
 double random_at(std::array<std::int64_t, 3> corner, std::uint64_t seed) {
   std::uint64_t x = seed;
   for (const std::int64_t number : corner) {

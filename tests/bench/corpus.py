@@ -17,10 +17,10 @@ import sys
 ENDINGS = (".ply", ".ply.gz", ".ply.zst")
 SCHEMES = ("cut", "stream")
 FILE_TO_FILE = "meshoptimizer_file"  # whole runs, as meshfarm's: the measure of time, not of error
-# A peer that leaves more triangles than were asked for has an easier task: it is no yardstick.
+# A peer that leaves more triangles than were asked for has an easier task: no fair comparison.
 MOST_OF_ASKED = 1.02
-# As a fraction of the diagonal: half the last place of a float of that size. What is below is as
-# good as exact.
+# As a fraction of the diagonal: half a unit in the last place of a float of that size. Anything
+# below counts as exact.
 FINEST_RMS = 2.0 ** -25
 HEAD = ["mesh", "kept", "scheme", "asked", "reached", "RMS 1e-6", "max 1e-6", "CPU s",
         "best peer", "its RMS 1e-6", "RMS / best", "CPU / meshoptimizer"]

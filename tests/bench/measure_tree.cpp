@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // measure_tree REPORT.json COMMAND [ARGUMENT ...]: runs a command and reports wall time, the CPU
-// time of all the processes that it starts, and the peak of the anonymous memory that they hold
-// together, looked at every few milliseconds. Exits with the command's exit code.
+// time of all processes that it starts, and the peak of their total anonymous memory, sampled every
+// few milliseconds. Exits with the command's exit code.
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -34,7 +34,7 @@ constexpr timespec k_interval{0, 5'000'000};
   std::exit(125);
 }
 
-/// What /proc says may be gone by the time it is read: then it is nothing.
+/// A process may be gone before its /proc entry is read: then it has no children.
 std::vector<pid_t> children_of(pid_t parent) {
   std::vector<pid_t> children;
   std::error_code gone;
@@ -83,7 +83,7 @@ struct Measured {
   std::uint64_t peak_kb = 0;
 };
 
-/// Returns when every process below has ended; orphans become ours, so none is missed.
+/// Returns when all descendants have ended; orphans are re-parented to us, so none is missed.
 Measured watch(pid_t first, const sigset_t& child_ended) {
   Measured out;
   const Clock::time_point begin = Clock::now();
@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
   sigaddset(&child_ended, SIGCHLD);
   if (sigprocmask(SIG_BLOCK, &child_ended, &before) != 0) die("sigprocmask");
   const pid_t first = start(argv + 2, before);
-  // On a busy machine the looks would come late; where this is not allowed, they may.
+  // On a busy machine samples would be late. Where raising the priority is refused, they may be.
   setpriority(PRIO_PROCESS, 0, -10);
   const Measured measured = watch(first, child_ended);
   if (!write_report(argv[1], measured)) die(argv[1]);

@@ -19,7 +19,7 @@ namespace meshfarm::bench {
 using CgalKernel = CGAL::Simple_cartesian<double>;
 using CgalMesh = CGAL::Surface_mesh<CgalKernel::Point_3>;
 
-/// A halfedge mesh holds manifolds only: where the input is none, its vertices are split.
+/// A halfedge mesh must be manifold: where the input is not, its vertices are split.
 inline CgalMesh to_cgal(const Mesh& mesh) {
   namespace soup = CGAL::Polygon_mesh_processing;
   std::vector<CgalKernel::Point_3> points;
@@ -54,7 +54,7 @@ inline Mesh from_cgal(CgalMesh& in) {
   return out;
 }
 
-/// CGAL 5.5 counts edges; the number of triangles that these are depends on the borders.
+/// CGAL 5.5 counts edges; the number of triangles for a given edge count depends on the borders.
 class FewEnoughTriangles {
  public:
   explicit FewEnoughTriangles(std::size_t target) : target_(target) {}

@@ -10,7 +10,7 @@
 namespace meshfarm::bench {
 namespace {
 
-/// Plane quadrics, with the placement that refuses flips: the manual advises it.
+/// Plane quadrics, with the placement that refuses flips, as the manual advises.
 Mesh simplify(Task task, Stopwatch& watch) {
   namespace sms = CGAL::Surface_mesh_simplification;
   using Policies = sms::GarlandHeckbert_plane_policies<CgalMesh, CgalKernel>;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// No peer: writes the clean mesh that all peers are given, for those that are not written in C++.
+// Not a peer: writes the clean mesh that all peers get, for peers that are not written in C++.
 #include <utility>
 
 #include "peer.hpp"

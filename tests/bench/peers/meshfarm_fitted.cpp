@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// meshfarm's kernel, and the fit of the colours that a whole run ends with.
+// meshfarm's kernel, plus the fit of the colours that ends a whole run.
 #include <utility>
 #include <vector>
 

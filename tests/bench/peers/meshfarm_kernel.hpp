@@ -10,7 +10,7 @@
 
 namespace meshfarm::bench {
 
-/// The simplifier of one part, with the default of --weight colour where the mesh has colours.
+/// The simplifier of one part, with the default of --weight colour if the mesh has colours.
 inline Mesh simplify_by_kernel(Task task, Stopwatch& watch) {
   SimplifyOptions options;
   options.positions = task.positions;

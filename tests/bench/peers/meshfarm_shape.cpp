@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// meshfarm without the colours of the input: what they cost in time and error.
+// meshfarm without the input's colours: shows what they cost in time and error.
 #include <utility>
 
 #include "meshfarm_kernel.hpp"

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import time
 
-# The filter's defaults, but for the number of triangles; it wants to be told all of them.
+# The filter's defaults, except for the number of triangles; all of them must be given.
 SCRIPT = """<!DOCTYPE FilterScript>
 <FilterScript>
  <filter name="Simplification: Quadric Edge Collapse Decimation">

@@ -49,8 +49,8 @@ struct Arrays {
   std::vector<unsigned> indices;
 };
 
-/// Vertices at one point become one. (A shadow index buffer, which leaves the twins in place,
-/// makes meshopt_simplify take them for seams.)
+/// Merges vertices at the same point. (With a shadow index buffer, which leaves the twins in place,
+/// meshopt_simplify takes them for seams.)
 void weld(Arrays& mesh) {
   const std::size_t vertices = mesh.positions.size() / 3;
   std::vector<unsigned> remap(vertices);

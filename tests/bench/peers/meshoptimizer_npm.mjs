@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The newest meshoptimizer, which npm has, as it moves vertices to where the error is least:
+// The newest meshoptimizer, from npm, in the mode that moves vertices to where the error is least:
 // meshoptimizer_npm.mjs BUILD_FOLDER INPUT.ply OUTPUT.ply RATIO
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
@@ -14,7 +14,7 @@ const home = path.join(path.resolve(build), 'npm', 'node_modules', 'meshoptimize
 const { MeshoptSimplifier } = await import(pathToFileURL(path.join(home, 'index.js')));
 await MeshoptSimplifier.ready;
 
-// A file of peer_clean's.
+// Reads a file written by peer_clean.
 function read(file) {
   const bytes = fs.readFileSync(file);
   const end = 'end_header\n';
@@ -72,7 +72,7 @@ const { positions, colours, indices } = read(clean);
 fs.unlinkSync(clean);
 const target = 3 * Math.round(ratio * indices.length / 3);
 const anyError = 3e38;
-// Of the two that were tried, 0.01 and 0.05, the one with the closer colours.
+// Of the two weights tried, 0.01 and 0.05, the one with the closer colours.
 const weights = colours.length === 0 ? [] : [0.05, 0.05, 0.05];
 const before = process.cpuUsage();
 const start = process.hrtime.bigint();

@@ -14,7 +14,7 @@
 namespace meshfarm::bench {
 namespace {
 
-/// Positions in double, as the quadrics are; the status bits mark what is deleted.
+/// Positions in double, like the quadrics; the status bits mark deleted elements.
 struct Traits : OpenMesh::DefaultTraits {
   using Point = OpenMesh::Vec3d;
   VertexAttributes(OpenMesh::Attributes::Status);
@@ -23,7 +23,7 @@ struct Traits : OpenMesh::DefaultTraits {
 };
 using OmMesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
 
-/// A halfedge mesh holds manifolds only: triangles that it refuses are left out.
+/// A halfedge mesh must be manifold: triangles that it refuses are left out.
 void fill(OmMesh& out, const Mesh& mesh) {
   omerr().disable();
   out.reserve(mesh.positions.size(), mesh.triangles.size() * 3 / 2, mesh.triangles.size());

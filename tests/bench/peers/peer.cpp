@@ -22,7 +22,7 @@
 namespace meshfarm::bench {
 namespace {
 
-constexpr float k_range = 65535;  // of an appearance's numbers
+constexpr float k_range = 65535;  // of an appearance's components
 
 double seconds(clockid_t clock) {
   timespec now{};

@@ -12,8 +12,8 @@
 
 namespace meshfarm::bench {
 
-/// CPU time of all threads of this process, and wall time, between start() and stop(), added up
-/// if it is started again.
+/// CPU time of all threads of this process, and wall time, between start() and stop(); further
+/// intervals are added.
 class Stopwatch {
  public:
   void start();
@@ -26,10 +26,10 @@ class Stopwatch {
   double wall_s_ = 0;
 };
 
-/// What every peer is given: the same clean mesh, and how many triangles are wanted of it.
+/// The input of every peer: the same clean mesh, and the number of triangles wanted.
 struct Task {
-  /// Coincident vertices are one, no triangle has two equal corners, every vertex is used. With the
-  /// colours of the input, if it has any: a peer that cannot take them gives back none.
+  /// Coincident vertices are merged, no triangle has two equal corners, every vertex is used. Has
+  /// the colours of the input, if any; a peer that cannot take them returns none.
   Mesh mesh;
   std::uint64_t target = 0;
   PositionType positions = PositionType::float32;
@@ -38,7 +38,7 @@ struct Task {
 struct Peer {
   std::string tool;
   std::string version;
-  /// Brings the mesh into the peer's own form, simplifies it under the stopwatch, brings it back.
+  /// Converts the mesh to the peer's own form, simplifies it under the stopwatch, converts it back.
   Mesh (*simplify)(Task task, Stopwatch& watch) = nullptr;
 };
 
@@ -56,11 +56,11 @@ struct Outcome {
   std::uint64_t triangles = 0;
 };
 
-/// The first three numbers of an appearance, from 0 to 1.
+/// The first three components of an appearance, from 0 to 1.
 std::array<float, 3> colour_of(const Appearance& appearance);
 Appearance appearance_of(std::span<const float, 3> colour);
 
-/// How many triangles are wanted; meshfarm's own rule.
+/// The number of triangles wanted, by meshfarm's own rule.
 std::uint64_t share_of(std::uint64_t triangles, double ratio);
 
 /// The whole program: parses the command line, runs, prints the outcome as one JSON line, errors on

@@ -74,7 +74,7 @@ Mesh simplify(Task task, Stopwatch& watch) {
   const bool coloured = !task.mesh.appearances.empty();
   task.mesh = {};
   vtkNew<vtkQuadricDecimation> decimation;
-  // Scalars with their default weight, nothing else.
+  // Scalars with their default weight, no other attributes.
   decimation->SetAttributeErrorMetric(coloured);
   decimation->SetInputData(mesh);
   decimation->SetTargetReduction(1 - static_cast<double>(task.target) / before);
