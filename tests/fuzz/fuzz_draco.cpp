@@ -25,8 +25,8 @@ std::string document_of(const Counts& counts) {
 
 }  // namespace
 
-/// The counts of the accessors, and then any bytes as Draco compressed them. In this process, so
-/// that what is run is seen; a build whose Draco has sanitizers shows more.
+/// Input: the counts of the accessors, then the bytes of Draco's data. Decoded in this process, so
+/// that the fuzzer sees coverage; a Draco built with sanitizers shows more.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshfarm;
   constexpr std::size_t k_most_bytes = 1 << 12;

@@ -18,7 +18,7 @@ std::unique_ptr<meshfarm::MeshSource> open_any(const std::string& path,
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // Some nodes and primitives may show one mesh any number of times.
+  // A few nodes and primitives can repeat one mesh any number of times.
   const auto count = [](const meshfarm::MeshSource& source) {
     constexpr std::uint64_t k_most = 1 << 20;
     const std::uint64_t most = std::max(source.info().vertices, source.info().faces);
@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return meshfarm::fuzz::fuzz_mesh(data, size, [count](const std::string& path) {
     auto source = open_any(path, {.textures = meshfarm::Textures::name});
     const std::uint64_t most = count(*source);
-    // A small picture may have any number of texels, and so may a triangle.
+    // A small picture can have any number of texels, and so can a triangle.
     constexpr std::uint64_t k_most_sampled = 1 << 9;
     if (source->info().textures.empty() || most > k_most_sampled) return source;
     return open_any(path, {.textures = meshfarm::Textures::bake,

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const JournalContent content = parse_journal(bytes, "journal");
     std::size_t whole = content.torn_bytes + (size < 8 ? 0 : 8);
     for (const std::string& record : content.records) whole += 12 + record.size();
-    if (whole != size) std::abort();  // every byte is a record's or counted as torn
+    if (whole != size) std::abort();  // every byte belongs to a record or counts as torn
   } catch (const DataError&) {
   }
   if (const auto name = parse_staged_name(bytes); name && to_string(*name) != bytes) std::abort();

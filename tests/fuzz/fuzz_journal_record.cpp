@@ -14,7 +14,7 @@ namespace {
 void try_record(std::string_view record) {
   try {
     const meshfarm::JournalRecord decoded = meshfarm::decode_record(record, "fuzz");
-    // One of version 1 tells of no run, and is written anew as one of today.
+    // A record of version 1 names no run, and is re-encoded in the current version.
     const meshfarm::JournalRecord again =
         meshfarm::decode_record(meshfarm::encode_record(decoded), "fuzz");
     if (again.run != decoded.run || again.accepted.output.file != decoded.accepted.output.file) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A key file: as all staged files, and as the four keys of a sound one.
+// A key file: once like all staged files, and once as the four keys of a valid file.
 #include <algorithm>
 #include <cstdlib>
 #include <string>

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// A frame from anybody: refused with DataError, or a message that encodes to the same bytes.
+// A frame from anybody: refused with DataError, or decoded to a message that encodes to the same
+// bytes.
 #include <cstdint>
 #include <cstdlib>
 

@@ -5,7 +5,7 @@
 #include "io/mtl.hpp"
 #include "mesh_fuzzer.hpp"
 
-// Any text ends in materials of finite numbers.
+// Any text gives materials with finite numbers.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshfarm;
   for (const MtlMaterial& each : parse_mtl({reinterpret_cast<const char*>(data), size})) {

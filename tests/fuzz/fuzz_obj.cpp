@@ -7,11 +7,11 @@
 
 namespace {
 
-// In the folder of open files a file's name is its number.
+// In /proc/self/fd a file's name is its number.
 constexpr int k_library = 100;
 constexpr int k_picture = 101;
 
-/// An empty file if there is nothing.
+/// An empty file if `bytes` is empty.
 meshfarm::Fd open_as(int number, std::string_view bytes) {
   const meshfarm::Fd file(::memfd_create("beside", MFD_CLOEXEC));
   meshfarm::fuzz::require(bool(file));
@@ -23,7 +23,7 @@ meshfarm::Fd open_as(int number, std::string_view bytes) {
 
 }  // namespace
 
-// An OBJ, and after a zero the library "100", and after another the picture "101".
+// An OBJ, then after a zero byte the library "100", and after another one the picture "101".
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view all(reinterpret_cast<const char*>(data), size);
   const std::string_view mesh = all.substr(0, all.find('\0'));
@@ -40,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return meshfarm::fuzz::fuzz_mesh(data, mesh.size(), [](const std::string& path) {
     auto source = meshfarm::open_obj(meshfarm::InputFile(path),
                                      {.threads = 2, .textures = meshfarm::Textures::name});
-    // A small picture may have any number of texels, and so may a triangle.
+    // A small picture can have any number of texels, and so can a triangle.
     constexpr std::uint64_t k_most_sampled = 1 << 9;
     if (source->info().textures.empty() || source->info().faces > k_most_sampled) return source;
     return meshfarm::open_obj(meshfarm::InputFile(path),

@@ -5,7 +5,7 @@
 #include "io/picture.hpp"
 #include "mesh_fuzzer.hpp"
 
-// Any bytes end in texels, or in an Error of ours.
+// Any bytes give texels, or one of our Errors.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshfarm;
   const std::string bytes(reinterpret_cast<const char*>(data), size);

@@ -8,7 +8,7 @@ namespace {
 
 using meshfarm::Textures;
 
-// In the folder of open files a file's name is its number.
+// In /proc/self/fd a file's name is its number.
 constexpr int k_picture = 101;
 
 /// A PNG of one texel.
@@ -31,13 +31,13 @@ meshfarm::Fd open_picture() {
 
 }  // namespace
 
-/// A file of any format, by its content. Its textures may have the picture "101".
+/// A file of any format, recognised by its content. Its textures can refer to the picture "101".
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const meshfarm::Fd picture = open_picture();
   for (const Textures textures : {Textures::drop, Textures::keep, Textures::bake}) {
     const int used = meshfarm::fuzz::fuzz_mesh(data, size, [textures](const std::string& path) {
       auto source = meshfarm::open_mesh(path, {.textures = Textures::name});
-      // A triangle may have any number of texels.
+      // A triangle can cover any number of texels.
       constexpr std::uint64_t k_most_sampled = 1 << 9;
       if (textures == Textures::bake && source->info().faces > k_most_sampled) return source;
       return meshfarm::open_mesh(path, {.textures = textures});

@@ -16,7 +16,7 @@ void decode(std::string_view file, std::size_t rung) {
 
 }  // namespace
 
-/// As they are; and as a rung and a tail, behind the checksums.
+/// Decodes the bytes as a file, and as a rung and a tail, past the checksums.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshfarm;
   const std::size_t rung = size == 0 ? 0 : data[size - 1] % 4;

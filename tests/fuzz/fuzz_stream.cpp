@@ -23,8 +23,8 @@ void read_all(const std::string& file) {
   }
 }
 
-/// Puts right sums behind the head and behind each block that the counts tell of, so that the
-/// checksums do not keep the fuzzer from what lies behind them.
+/// Writes valid checksums after the head and after each block that the counts announce, so that the
+/// fuzzer gets past them.
 std::string resealed(std::string file) {
   constexpr std::size_t k_head = 37;
   if (file.size() < k_head + 8) return file;

@@ -5,7 +5,7 @@
 #include "io/texture.hpp"
 #include "mesh_fuzzer.hpp"
 
-// Any places on a small picture give levels of its texels, in bounded time.
+// Any texture coordinates on a small picture give levels of its texels, in bounded time.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace meshfarm;
   std::array<TexturePoint, 3> corners;

@@ -17,7 +17,7 @@
 
 namespace meshfarm::fuzz {
 
-/// Of one picture that is sampled.
+/// The limit for a picture that is sampled.
 inline constexpr std::uint64_t k_most_picture_bytes = 1 << 18;
 
 inline void require(bool holds) {
@@ -54,8 +54,8 @@ inline void scan(MeshSource& source) {
   });
 }
 
-/// Any bytes, opened as a mesh file by `open(path)` and scanned twice, end in triangles with good
-/// indices or in an Error of ours.
+/// Any bytes, opened as a mesh file by `open(path)` and scanned twice, give triangles with valid
+/// indices, or one of our Errors.
 template <class Open>
 int fuzz_mesh(const std::uint8_t* data, std::size_t size, const Open& open) {
   constexpr std::size_t k_most_bytes = 1 << 16;  // a compressed input grows by a factor of 1000

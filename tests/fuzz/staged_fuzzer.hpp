@@ -11,9 +11,9 @@
 
 namespace meshfarm::fuzz {
 
-/// Gives a decoder the bytes as a file, and once more sealed as the payload of a file of its kind,
-/// so that the checksum does not keep the fuzzer from what lies behind it: in each version, of
-/// which it takes its own. Only DataError may come out.
+/// Gives a decoder the bytes as a file, and then sealed as the payload of a file of its kind, so
+/// that they get past the checksum: once in each version, of which it takes its own. Only DataError
+/// may be thrown.
 template <class Decode>
 void decode_staged(const std::uint8_t* data, std::size_t size, FileKind kind, Decode decode) {
   constexpr std::uint32_t k_most_versions = 9;
