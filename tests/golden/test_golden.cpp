@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Golden checksums: of what the kernel makes of small generated meshes, and of each staged format.
-// They notice bytes that have changed while the version that tells so was not raised.
-// 'scripts/renew-golden.sh' writes them anew.
+// Golden checksums of the kernel's results for small generated meshes, and of each staged format.
+// They detect bytes that changed without a raised version. 'scripts/renew-golden.sh' renews them.
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -40,7 +39,7 @@ namespace {
 
 constexpr const char* k_list = MESHFARM_SOURCE_DIR "/tests/golden/checksums.txt";
 
-/// Something whose bytes are watched, and where its version is raised.
+/// Something whose bytes are watched, and where to raise its version.
 struct Watched {
   std::string name;
   std::uint32_t version = 0;
@@ -71,7 +70,7 @@ Watched kernel(const std::string& name, Shape shape, const LineOptions& lines, P
   }
   Simplifier simplifier(std::move(mesh), {.positions = type, .lines = lines});
   Checksum sum;
-  // Two steps: far from the goal and near it, which go different ways.
+  // Two steps, far from the goal and near it: they take different code paths.
   for (const std::uint64_t triangles : {8 * target, target}) {
     simplifier.reduce({.triangles = triangles, .last_triangles = target});
     add_all(sum, simplifier.mesh().positions);
@@ -81,7 +80,7 @@ Watched kernel(const std::string& name, Shape shape, const LineOptions& lines, P
           "k_algorithm_version in include/meshfarm/pipeline/algorithm.hpp"};
 }
 
-/// Of a file whose version stands at this byte.
+/// A file whose version is at byte `version_at`.
 Watched format(const std::string& name, const std::string& file, std::size_t version_at,
                const std::string& source) {
   std::uint32_t version = 0;
@@ -90,7 +89,7 @@ Watched format(const std::string& name, const std::string& file, std::size_t ver
   return {"format/" + name, version, checksum(file), "the version in " + source};
 }
 
-/// Of a file that begins with magic, kind and version.
+/// A file that begins with magic, kind and version.
 Watched staged(const std::string& name, const std::string& file, const std::string& source) {
   return format(name, file, 8, source);
 }
@@ -159,7 +158,7 @@ std::vector<CornerUvs> flat_uvs(const Mesh& mesh) {
   return uvs;
 }
 
-/// Its tiles' checksums are in it.
+/// The directory contains the tiles' checksums.
 std::string tiled_directory() {
   std::vector<std::uint8_t> texels;
   for (int i = 0; i < 3 * 200 * 200; ++i) texels.push_back(static_cast<std::uint8_t>(i * 7));
@@ -214,7 +213,7 @@ std::vector<Watched> all_watched() {
   };
 }
 
-/// A line each: NAME VERSION CHECKSUM.
+/// One line each: NAME VERSION CHECKSUM.
 std::map<std::string, Golden> read_list() {
   std::map<std::string, Golden> list;
   std::ifstream file(k_list);
@@ -234,7 +233,7 @@ void write_list(const std::vector<Watched>& watched) {
   }
 }
 
-/// What has to be done about it; empty if its bytes are as they were.
+/// What has to be done about it; empty if the bytes are unchanged.
 std::string complaint(const Watched& it, const std::map<std::string, Golden>& list) {
   const auto golden = list.find(it.name);
   if (golden == list.end()) return it.name + " is not in the list";
