@@ -15,9 +15,9 @@
 
 #include <doctest/doctest.h>
 
-// Reads the layer table (the meshfarm_layer lines of CMakeLists.txt) and every #include, and names
-// file and line of whatever the table does not allow. The check takes texts, so that made-up
-// ones can prove that each rule does fire.
+// Reads the layer table (the meshfarm_layer lines of CMakeLists.txt) and every #include, and
+// reports file and line of everything that the table does not allow. The check works on texts, so
+// that made-up ones can show that each rule fires.
 
 namespace {
 
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 struct Package {
   std::string_view name;     // as in PACKAGES
-  std::string_view pattern;  // a whole header, or with a "/" the start of its path
+  std::string_view pattern;  // a whole header, or a path prefix if it has a "/"
 };
 
 // The first match decides.
@@ -40,7 +40,7 @@ constexpr std::array k_packages{
     Package{"cppzmq", "zmq_addon.hpp"},
     Package{"cppzmq", "zmq.h"},
     Package{"PkgConfig::httplib", "httplib.h"},
-    // The system's sockets are for the layer of ZeroMQ alone, too.
+    // The system's sockets, too, are only for the layer that uses ZeroMQ.
     Package{"cppzmq", "sys/socket.h"},
     Package{"cppzmq", "sys/un.h"},
     Package{"cppzmq", "sys/epoll.h"},
@@ -61,13 +61,13 @@ constexpr std::array k_packages{
     Package{"doctest", "doctest/"},
 };
 
-// What more than one layer may name: io reads JSON, in glTF, and report writes it.
+// Packages that several layers may use: io reads JSON (glTF), and report writes it.
 constexpr std::string_view k_of_many_layers = "nlohmann_json::nlohmann_json";
 
 constexpr std::size_t k_max_lines = 600;
 
 struct SourceFile {
-  std::string path;  // from the project's root
+  std::string path;  // relative to the project's root
   std::string text;
 };
 
@@ -90,7 +90,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// The parts of a path that has "/" between them.
+/// The parts of a path between its "/".
 std::vector<std::string> parts_of(const std::string& path) {
   std::vector<std::string> parts;
   std::istringstream stream(path);
@@ -118,7 +118,7 @@ Layer parse_layer(const std::string& arguments, std::size_t line, std::string& n
 
 Layers parse_layers(const std::string& cmake) {
   static const std::string k_call = "meshfarm_layer(";
-  std::string text;  // without comments, but with their line ends: they number the lines
+  std::string text;  // without comments, but with their line ends, to keep the line numbers
   for (const std::string& line : lines_of(cmake)) text += line.substr(0, line.find('#')) + "\n";
   Layers layers;
   for (std::size_t begin = text.find(k_call); begin != std::string::npos;) {
@@ -134,7 +134,7 @@ Layers parse_layers(const std::string& cmake) {
   return layers;
 }
 
-/// Can `from` come to `to` by USES?
+/// Does `from` reach `to` through USES?
 bool reaches(const Layers& layers, const std::string& from, const std::string& to,
              std::set<std::string>& seen) {
   if (!layers.contains(from) || !seen.insert(from).second) return false;
@@ -176,7 +176,7 @@ struct Includer {
   const Layer& rules;
 };
 
-/// The package that a header belongs to; none for the standard library's and our own.
+/// The package that a header belongs to; none for headers of the standard library and our own.
 std::string package_of(const std::string& header) {
   for (const Package& package : k_packages) {
     const bool is_start = package.pattern.find('/') != std::string_view::npos;
@@ -187,7 +187,7 @@ std::string package_of(const std::string& header) {
   return "";
 }
 
-/// What is wrong with this include; empty if nothing.
+/// What is wrong with this include; empty if nothing is.
 std::string fault_of(const Includer& from, const std::string& header, bool is_quoted,
                      const Layers& layers) {
   const std::vector<std::string> parts = parts_of(header);
@@ -216,7 +216,7 @@ struct Include {
   bool is_quoted = false;
 };
 
-/// The include that a line is; no header if it is none.
+/// The include on a line; no header if there is none.
 Include parse_include(const std::string& line) {
   std::string_view rest = line;
   const auto skip = [&rest](std::string_view word) {
@@ -263,7 +263,7 @@ void check_file(const SourceFile& file, const Layers& layers, Problems& problems
   }
 }
 
-/// The name that a line defines outside of functions and classes, or "". Functions may overload.
+/// The name that a line defines at file scope, or "". Functions may be overloaded.
 std::string name_at_file_scope(const std::string& line) {
   static const std::regex k_names(
       "(?:(?:inline |static )*constexpr [^(=;{]*?\\b(k_\\w+)\\s*(?:\\[.*\\])?\\s*[={;].*"
@@ -274,10 +274,10 @@ std::string name_at_file_scope(const std::string& line) {
   return match[1].matched ? match[1] : match[2].matched ? match[2] : match[3];
 }
 
-/// Which sources are compiled together depends on how many there are: two that define the same name
-/// may pass for long.
+/// Which sources are compiled together depends on their number, so two sources that define the same
+/// name may go unnoticed for long.
 void check_names(const std::vector<SourceFile>& files, Problems& problems) {
-  std::map<std::pair<std::string, std::string>, std::string> first;  // of layer and name: the path
+  std::map<std::pair<std::string, std::string>, std::string> first;  // (layer, name) -> path
   for (const SourceFile& file : files) {
     if (!file.path.starts_with("src/") || !file.path.ends_with(".cpp")) continue;
     const std::vector<std::string> lines = lines_of(file.text);
@@ -330,7 +330,7 @@ const std::string k_table =
     "               PACKAGES METIS::METIS)\n"
     "meshfarm_layer(side USES low PACKAGES Boost::iostreams cppzmq)\n";
 
-/// The problems of one file with one line, under k_table.
+/// The problems of one file that has this one line, under k_table.
 Problems problems_of(const std::string& path, const std::string& line) {
   return check_layers(k_table, {{path, "#pragma once\n" + line + "\n"}});
 }
@@ -356,7 +356,7 @@ TEST_CASE("the project keeps its own layer table") {
   const fs::path root = MESHFARM_SOURCE_DIR;
   const std::string cmake = read(root / "CMakeLists.txt");
   const std::vector<SourceFile> files = read_tree(root);
-  // A check that read nothing would pass.
+  // A check that read nothing would pass, too.
   CHECK(parse_layers(cmake).size() >= 10);
   CHECK(std::count_if(files.begin(), files.end(), [](const SourceFile& file) {
           return file.path.starts_with("include/meshfarm/");
@@ -463,7 +463,7 @@ TEST_CASE("a package is refused outside its layer, and in include/ everywhere") 
   check_refused("src/low/a.cpp", "#include <metis.h>", "does not name package METIS");
   check_refused("tests/unit/low/a.cpp", "#include <metis.h>", "does not name package METIS");
   check_refused("src/mid/a.cpp", "#include <doctest/doctest.h>", "package doctest");
-  // One layer's Boost library is not all of Boost.
+  // A layer that may use one Boost library may not use all of Boost.
   check_refused("src/side/a.cpp", "#include <boost/program_options.hpp>", "program_options");
   check_refused("src/side/a.cpp", "#include <boost/crc.hpp>", "package Boost");
   for (const Package& package : k_packages) {
