@@ -26,7 +26,7 @@ std::vector<A> only(const Actions& actions) {
   return found;
 }
 
-/// The messages of type M among the actions, to this peer.
+/// The messages of type M to this peer among the actions.
 template <class M>
 std::vector<M> said_to(const PeerId& peer, const Actions& actions) {
   std::vector<M> found;
@@ -37,7 +37,7 @@ std::vector<M> said_to(const PeerId& peer, const Actions& actions) {
   return found;
 }
 
-/// A Dispatcher with a clock, and short words for what its peers say.
+/// A Dispatcher with a clock, and shorthands for its peers' messages.
 struct Desk {
   explicit Desk(JobSource source, WhenFull when_full = WhenFull::wait)
       : dispatcher(Plan(std::move(source), 3),
@@ -46,7 +46,7 @@ struct Desk {
   Actions say(const PeerId& peer, const Message& message) {
     return dispatcher.on_message(peer, message, now);
   }
-  /// Joins; the worker's id is as many as joined before, plus 1.
+  /// Joins; the worker's id is 1 plus the number of workers that joined before.
   Actions worker(const PeerId& peer, std::uint64_t incarnation) {
     const Actions opened = say(peer, Hello{Role::worker, 0, incarnation, 1, "host", {}});
     const auto lanes = only<OpenLane>(opened);

@@ -16,7 +16,7 @@ inline JobOutput output_of(JobKey key) {
   return {{to_string(ResultName{key.value, 1, 1}), 1, 1}, "made"};
 }
 
-/// A plan with a scheduler and short words.
+/// A plan with a scheduler, and shorthands.
 struct ScheduleDesk {
   explicit ScheduleDesk(std::vector<Job> jobs, const SchedulerOptions& options = {})
       : ScheduleDesk(std::vector<std::vector<Job>>{std::move(jobs)}, options) {}
@@ -30,7 +30,7 @@ struct ScheduleDesk {
     scheduler.join({id}, host, capacity);
     scheduler.set_room({id}, room);
   }
-  /// All that can be handed out now: "name@worker ".
+  /// Everything that can be handed out now, each as "name@worker ".
   std::string hand_out() {
     std::string names;
     while (const auto pick = scheduler.next(plan, now)) {
@@ -39,7 +39,7 @@ struct ScheduleDesk {
     return names;
   }
   std::string second_attempts() {
-    now += FarmTime(100);  // often enough asked
+    now += FarmTime(100);  // the scheduler looks for second attempts every 100 ms
     std::string names;
     for (const auto& pick : scheduler.second_attempts(plan, now)) {
       names += pick.job.job.parameters + "@" + std::to_string(pick.worker.value) + " ";

@@ -25,7 +25,7 @@ std::vector<A> only(const SinkActions& actions) {
   return found;
 }
 
-/// What the sink says of type M.
+/// The sink's messages of type M.
 template <class M>
 std::vector<M> said(const SinkActions& actions) {
   std::vector<M> found;
@@ -43,7 +43,7 @@ inline JobOutput result_of(JobKey of, std::uint32_t attempt = 1, std::uint64_t i
   return {{to_string(ResultName{of.value, attempt, incarnation}), 1, 1}, "made"};
 }
 
-/// A sink with a clock, of a run of jobs "job 0", "job 1"...
+/// A sink with a clock, for a run of jobs "job 0", "job 1"...
 struct SinkBench {
   explicit SinkBench(std::size_t jobs, std::map<JobKey, JobOutput> journal = {},
                      WhenFull when_full = WhenFull::wait)
@@ -68,13 +68,13 @@ struct SinkBench {
     return core.on_result(
         Result{7, epoch, {3}, 5, attempt, of, result_of(of, attempt), {1, 2, 3, 4}});
   }
-  /// The result comes, and its file is found whole.
+  /// The result arrives, and its file is found whole.
   SinkActions accept(JobKey of) {
     const auto checks = only<Check>(result(of));
     REQUIRE(checks.size() == 1);
     return core.checked(checks[0], {}, now);
   }
-  /// Files that journals know are there, of their sizes.
+  /// The files that journals know exist, with the right sizes.
   SinkActions look_at_all(const SinkActions& actions) {
     return answer(actions, Check::What::known);
   }
@@ -94,7 +94,7 @@ struct SinkBench {
   FarmTime now{0};
 };
 
-/// A job of a worker, and then one of the sink.
+/// A worker's job, followed by one of the sink.
 inline JobSource then_own() {
   Job own = make_job("own");
   own.by_sink = true;

@@ -21,7 +21,7 @@ TEST_CASE("no job goes out before a sink is ready, nor beyond the credit") {
   CHECK(names(desk.credit("w", 1, 2)).empty());  // the same again gives nothing more
   CHECK(names(desk.credit("w", 1, 1)).empty());  // nor does less
   CHECK(names(desk.credit("w", 1, 3)) == "job 7@1 ");
-  CHECK(names(desk.accept("s", key(9), 1)).empty());  // done, but no credit for another
+  CHECK(names(desk.accept("s", key(9), 1)).empty());  // done, but no credit for another job
   CHECK(desk.dispatcher.holding() == 2);
 }
 
@@ -53,7 +53,7 @@ TEST_CASE("those who watch are told who came, what was done in which stage, and 
   desk.dispatcher.lane_opened({1}, "lane");
   desk.credit("w", 1, 5);
   CHECK(std::get<JobAccepted>(told(desk.accept("s", key(0), 1))).place.stage == "stage 0");
-  CHECK(only<Tell>(desk.accept("s", key(0), 1)).empty());  // it is not news
+  CHECK(only<Tell>(desk.accept("s", key(0), 1)).empty());  // it is known already
   const auto second = std::get<JobAccepted>(told(desk.accept("s", key(1), 1)));
   CHECK(second.place.stage == "stage 1");
   CHECK(second.place.index == 1);
@@ -105,7 +105,7 @@ TEST_CASE("a silent worker loses its jobs; those it may have had in work are sus
   }
 }
 
-/// A worker that takes the only job and falls silent; the sink stays.
+/// A worker that takes the only job and falls silent, while the sink stays.
 Actions worker_dies(Desk& desk, std::uint32_t worker) {
   const PeerId peer = "w" + std::to_string(worker);
   desk.worker(peer, worker);
@@ -192,7 +192,7 @@ TEST_CASE("a job that stands still costs its worker its jobs") {
     CHECK(said_to<Stop>("a", lost)[0].why == StopReason::hung);
     CHECK(only<CloseLane>(lost).size() == 1);
     CHECK(desk.dispatcher.progress().workers_lost == 1);
-    CHECK(names(lost) == "job 1@2 ");  // a suspect now, but the other job there is none
+    CHECK(names(lost) == "job 1@2 ");  // a suspect now, but worker 2 holds no other suspect
   }
   SUBCASE("while it waits for the stage, much longer than others: its process lives on") {
     desk.say("b", standing(2, key(0), 0, true));
@@ -322,7 +322,7 @@ TEST_CASE("a rejected result is made again; another worker's rejection is not ou
   const Actions again =
       desk.say("s", Reject{k_epoch, {1}, 1001, key(0), {"damaged", FailureKind::attempt}});
   REQUIRE(said_to<Done>("w", again).size() == 1);
-  CHECK(said_to<Done>("w", again)[0].attempt == 1001);  // not the attempt that goes out now
+  CHECK(said_to<Done>("w", again)[0].attempt == 1001);  // not the attempt that is handed out now
   CHECK(names(again) == "job 0@1 ");
   CHECK(names(desk.say("s", Reject{k_epoch, {5}, 1002, key(0), {"forged", FailureKind::attempt}}))
             .empty());
@@ -380,7 +380,7 @@ TEST_CASE("a worker that was not answered yet and greets from elsewhere is the s
   }
   CHECK(names(desk.credit("a", 1, 1)).empty());
   CHECK(names(desk.credit("a2", 1, 1)) == "job 0@1 ");
-  // Once it is in, it holds what it was given under the name that it has.
+  // Once it has joined, its jobs belong to the name that it joined with.
   desk.say("a3", hello);
   CHECK(desk.dispatcher.holding() == 0);
 }

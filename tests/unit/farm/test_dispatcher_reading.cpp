@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What a reader cannot read another one tries, before anyone's host is blamed.
+// A file that one reader cannot read is tried by another, before anyone's host is blamed.
 #include <string>
 #include <vector>
 
@@ -14,7 +14,7 @@ namespace {
 
 const FileRef k_file{"results/x", 5, 6};
 
-/// The sink is on "host"; workers 1 and 2 have hosts of their own, and the first has some jobs.
+/// The sink is on "host"; workers 1 and 2 have hosts of their own, and worker 1 has some jobs.
 struct ReadingDesk : Desk {
   explicit ReadingDesk(const std::string& second_host = "host2") : Desk(one_stage(60)) {
     sink("s", 90);
@@ -29,7 +29,7 @@ struct ReadingDesk : Desk {
     const auto lanes = only<OpenLane>(say(peer, hello));
     dispatcher.lane_opened(lanes.at(0).worker, "lane");
   }
-  /// Says of the i-th job that it failed, 20 s after the last word: an incident of its own.
+  /// Reports the i-th job as failed, 20 s after the last message: a separate incident.
   Actions reject(std::size_t i, FailureKind kind, const FileRef& file = {}) {
     const PushJob& push = pushes.at(i);
     wait();
@@ -61,7 +61,7 @@ TEST_CASE("a worker of a third host is asked to read what the sink cannot") {
   const auto reads = said_to<TryRead>("w2", asked);
   REQUIRE(reads.size() == 1);
   CHECK(reads[0].file == k_file);
-  CHECK(said_to<Done>("w1", asked).empty());  // the attempt is open still
+  CHECK(said_to<Done>("w1", asked).empty());  // the attempt is still open
   CHECK(said_to<TryRead>("w2", desk.reject(0, FailureKind::unread, k_file)).empty());  // once
 }
 
@@ -116,7 +116,7 @@ TEST_CASE("a second reader that leaves, or never answers, blames nobody") {
 }
 
 TEST_CASE("where nobody else could tell the sink is believed") {
-  ReadingDesk desk("host");  // the second worker reads by the sink's own mount
+  ReadingDesk desk("host");  // the second worker reads through the sink's own mount
   const Actions rejected = desk.reject(0, FailureKind::attempt, k_file);
   CHECK(said_to<TryRead>("w2", rejected).empty());
   CHECK(said_to<Done>("w1", rejected).size() == 1);

@@ -81,7 +81,7 @@ TEST_CASE("a stage without room ends a run that shall not wait, resumable") {
   desk.sink("s", 9);
   desk.worker("w", 1);
   desk.credit("w", 1, 1);
-  // A worker's late word from a run before: room has been made since.
+  // A late message of a worker, from an earlier run: room has been made since.
   const Actions late =
       desk.say("s", Reject{k_epoch, {1}, 7, key(1), {"ENOSPC", FailureKind::no_space}});
   CHECK(only<Finish>(late).empty());

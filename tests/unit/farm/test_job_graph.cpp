@@ -43,7 +43,7 @@ TEST_CASE("a job is possible once all that it needs is accepted") {
   graph.add({1, 1}, {{0, 2}, {1, 0}}, make_of("c"));
   CHECK(names_of(graph.begin()) == "a0 a1 a2 ");
   CHECK(names_of(accept(graph, "a1")).empty());
-  CHECK(names_of(accept(graph, "a1")).empty());  // it is not news
+  CHECK(names_of(accept(graph, "a1")).empty());  // it is known already
   CHECK(names_of(accept(graph, "b")).empty());   // nobody asked for it yet
   CHECK(names_of(accept(graph, "a0")) == "b ");
   CHECK(names_of(accept(graph, "b")).empty());
@@ -107,7 +107,7 @@ TEST_CASE("what nobody adds is waited for; a name is given once") {
   CHECK_THROWS_AS(graph.output({0, 1}), Error);
 }
 
-/// Some jobs each depend on outputs of others, some jobs are only known late, some are the same.
+/// Some jobs depend on several outputs, some become known late, some are identical.
 JobGraph tangled() {
   JobGraph graph({"leaf", "pair", "late", "end"});
   constexpr std::uint32_t k_leaves = 20;
@@ -134,7 +134,7 @@ JobGraph tangled() {
   return graph;
 }
 
-/// Accepts in an order of chance. What came of it: each job with what it needed, and the outputs.
+/// Accepts in random order. Returns each job with what it needed, and the outputs.
 std::string outcome(std::uint32_t seed) {
   JobGraph graph = tangled();
   std::mt19937 random(seed);
@@ -192,7 +192,7 @@ JobSource tree_of(std::uint32_t jobs, std::uint32_t levels, std::uint32_t childr
   };
 }
 
-/// Bytes that the process has allocated; 0 where a sanitizer allocates.
+/// Bytes allocated by the process; 0 if a sanitizer replaces the allocator.
 std::size_t allocated() {
   const struct mallinfo2 info = ::mallinfo2();
   return info.uordblks + info.hblkhd;
@@ -201,7 +201,7 @@ std::size_t allocated() {
 TEST_CASE("a tree of a hundred thousand jobs is planned in a moment and 200 MB") {
   const std::size_t before = allocated();
   std::size_t most = before;
-  const std::clock_t start = std::clock();  // others may use the machine, too
+  const std::clock_t start = std::clock();  // CPU time, as others may use the machine, too
   Plan plan(tree_of(75'000, 8, 4), 3);
   plan.restart({});
   std::uint64_t done = 0;
@@ -213,7 +213,7 @@ TEST_CASE("a tree of a hundred thousand jobs is planned in a moment and 200 MB")
   CHECK(done > 99'000);
   const double took = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   MESSAGE(done, " jobs planned in ", took, " s of processor time");
-  CHECK(took < 10);  // half a second, but for sanitizers
+  CHECK(took < 10);  // it takes half a second without sanitizers
   MESSAGE("they take ", (most - before) >> 20, " MiB");
   CHECK(most - before < std::size_t{200} << 20);
 }

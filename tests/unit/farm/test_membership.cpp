@@ -18,12 +18,12 @@ Endpoint over(std::uint32_t epoch, std::uint64_t run) {
   return {epoch, run, {}, "h", 1, {}};
 }
 
-/// Somebody who looks for a ventilator, and a clock.
+/// A member that looks for a ventilator, with a clock.
 struct Seeker {
   explicit Seeker(std::uint64_t run = 0)
       : member({Role::worker, run, 99, 1, "h", {}, FarmTime(30'000)}) {}
 
-  /// Where it connects to once it sees these; empty: nowhere new.
+  /// The address that it dials once it sees these endpoints; empty: no new one.
   std::string sees(const std::vector<Endpoint>& endpoints) {
     now += FarmTime(500);
     last = member.tick(now);
@@ -90,7 +90,7 @@ TEST_CASE("who lost a ventilator stays with its run") {
   CHECK(seeker.last == Membership::Event::run_over);
 }
 
-/// When one that joins at 0 shows that it lives, in milliseconds.
+/// The times of the heartbeats of a member that joins at 0, in milliseconds.
 std::vector<int> beats_of(std::uint64_t incarnation) {
   Membership member({Role::worker, 0, incarnation, 1, "h", {}, FarmTime(30'000)});
   const Endpoint endpoint = live(1, 7);

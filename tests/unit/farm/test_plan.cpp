@@ -121,7 +121,7 @@ TEST_CASE("what a job reads with others is no part of what it is") {
   CHECK(extent_named("part", 1, 5).name != extent_named("vertices", 1, 5).name);
 }
 
-/// A job that the sink does, and one more job.
+/// A job for the sink, and one for workers.
 JobSource with_job_of_sink() {
   std::vector<Job> jobs = {make_job("theirs"), make_job("sink's")};
   jobs[1].by_sink = true;
@@ -141,7 +141,7 @@ TEST_CASE("a job of the sink is never issued, and runs until it is accepted") {
   CHECK(plan.accept(theirs, planned_output(theirs)));
   CHECK_FALSE(plan.complete());
   CHECK_FALSE(plan.stuck());
-  plan.give_back(own);  // nobody has it
+  plan.give_back(own);  // no worker has it
   CHECK(plan.state(own) == JobState::running);
   CHECK(plan.accept(own, planned_output(own)));
   CHECK(plan.complete());

@@ -13,10 +13,10 @@
 namespace meshfarm {
 namespace {
 
-/// One of every message, with no field left at its default.
+/// One of each message, with no field left at its default.
 std::vector<Message> one_of_each() {
   const FileRef part{"parts/000001.part", 123, 456};
-  JobOutput output;  // in steps: g++ 12 takes it for uninitialised otherwise
+  JobOutput output;  // in steps: g++ 12 warns of an uninitialised value otherwise
   output.file = {"results/00000000000000ff.a2.0000000000000001", 9, 10};
   output.summary = "summary";
   const JobFailure failure{"the disk is full", FailureKind::no_space};
@@ -117,7 +117,7 @@ TEST_CASE("a frame with any byte changed is refused, or is another message in ca
         std::string again = changed;
         try {
           again = encode(decode(changed));
-        } catch (const DataError&) {  // refused, as it should be if it is no message
+        } catch (const DataError&) {  // refused, as it should be unless it is a message
         }
         CHECK(again == changed);
       }

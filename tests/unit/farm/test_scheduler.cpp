@@ -12,7 +12,7 @@
 namespace meshfarm::test {
 namespace {
 
-/// Workers that do exactly as they are told, on virtual time; each holds up to 16 jobs.
+/// Workers that do exactly what they are told, in virtual time; each holds up to 16 jobs.
 class Shop {
  public:
   Shop(std::vector<Job> jobs, const SchedulerOptions& options)
@@ -20,7 +20,7 @@ class Shop {
     plan_.restart({});
   }
 
-  /// `speed`: what it really does; `claimed`: its benchmark.
+  /// `speed`: its real speed; `claimed`: its benchmark.
   void add(double speed, double claimed) {
     const WorkerId id{static_cast<std::uint32_t>(speeds_.size() + 1)};
     speeds_[id] = speed;
@@ -30,7 +30,7 @@ class Shop {
     scheduler_.set_room(id, k_room);
   }
 
-  /// The time until all jobs are done, over what it would take if the work were divisible.
+  /// The time until all jobs are done, relative to that of perfectly divisible work.
   double run() {
     double work = 0;
     for (const JobKey key : plan_.ready_jobs()) work += static_cast<double>(plan_.job(key).cost);
@@ -78,7 +78,7 @@ class Shop {
   double power_ = 0;
 };
 
-/// A model of `triangles` cut into parts that vary as a partitioner's do.
+/// A model of `triangles` cut into parts whose sizes vary like a partitioner's.
 std::vector<Job> parts_of(double triangles, std::size_t parts, double spread, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<Job> jobs;
@@ -90,7 +90,7 @@ std::vector<Job> parts_of(double triangles, std::size_t parts, double spread, un
   return jobs;
 }
 
-/// 16 fast workers and 8 of a third of their speed: the paper's Figure 4.
+/// 16 fast workers and 8 with a third of their speed: the paper's Figure 4.
 double mixed_farm(std::size_t parts, const SchedulerOptions& options, double claim_of_slow = 1) {
   Shop shop(parts_of(1e9, parts, 0.1, 7), options);
   for (int i = 0; i < 16; ++i) shop.add(1e6, 1e6);
@@ -113,7 +113,7 @@ TEST_CASE("a benchmark that is wrong by two is made up for by what workers do") 
   CHECK(mixed_farm(512, {}, 2.0) <= 1.05);
   CHECK(mixed_farm(512, {}, 0.5) <= 1.05);
   const SchedulerOptions fixed{.schedule = Schedule::fixed, .expect_workers = 24};
-  CHECK(mixed_farm(512, fixed, 2.0) > 1.2);  // as it does not
+  CHECK(mixed_farm(512, fixed, 2.0) > 1.2);  // the fixed schedule does not adapt
 }
 
 TEST_CASE("24 equal workers are busy to the end") {
@@ -221,7 +221,7 @@ TEST_CASE("a small worker finds what fits it behind very many that do not") {
 }
 
 TEST_CASE("the last job is left to a fast worker that comes free in time") {
-  // "long" takes the fast one 1 s, "last" 0.9 s; the slow one would need 9 s.
+  // "long" takes the fast worker 1 s, "last" 0.9 s; the slow one would need 9 s.
   ScheduleDesk desk({make_job("long", 1'000'000), make_job("last", 900'000)});
   desk.join(1, "fast", {1'000'000, 0, 1}, 1);
   desk.join(2, "slow", {100'000, 0, 1}, 1);
@@ -393,7 +393,7 @@ Job of_extent(const std::string& name, std::uint64_t extent) {
   return job;
 }
 
-/// Two stages that read the same.
+/// Two stages that read the same extents.
 std::vector<std::vector<Job>> two_readings(std::uint32_t extents) {
   std::vector<std::vector<Job>> stages(2);
   for (std::uint32_t i = 0; i < extents; ++i) {
@@ -455,7 +455,7 @@ TEST_CASE("how fast a worker is shows beside what others take for jobs of its ki
   desk.scheduler.did({2}, key_of(heavy), 1000, desk.now);
   for (const Job& job : {quick, heavy}) desk.plan.accept(key_of(job), output_of(key_of(job)));
   desk.now += FarmTime(1001);
-  CHECK(desk.hand_out().empty());  // they have no room; but they were looked at
+  CHECK(desk.hand_out().empty());  // they have no room, but their speeds were updated
   CHECK(desk.scheduler.speed({1}) == doctest::Approx(desk.scheduler.speed({2})).epsilon(0.01));
 }
 
@@ -467,7 +467,7 @@ TEST_CASE("one that takes longer at each kind is slower, and a wrong benchmark i
     if (i % 2 != 0) jobs.back().kind = "heavy";
   }
   ScheduleDesk desk(jobs);
-  // The third promises a hundredth of what it does.
+  // The third worker's benchmark claims a hundredth of its speed.
   for (const std::uint32_t id : {1, 2, 3}) {
     desk.join(id, "host", {id == 3 ? 10'000U : 1'000'000U}, 1);
   }
@@ -479,7 +479,7 @@ TEST_CASE("one that takes longer at each kind is slower, and a wrong benchmark i
     desk.scheduler.did(pick->worker, pick->job.key, ms, desk.now);
     desk.scheduler.drop(pick->worker, pick->job.key, desk.now);
     desk.plan.accept(pick->job.key, output_of(pick->job.key));
-    // They take turns, the third seldom.
+    // They take turns, the third one rarely.
     desk.scheduler.set_room(pick->worker, 0);
     desk.scheduler.set_room({i % 8 == 0 ? 3U : 1U + static_cast<std::uint32_t>(i / 2 % 2)}, 1);
     desk.now += FarmTime(1001);

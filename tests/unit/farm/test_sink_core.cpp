@@ -18,7 +18,7 @@ TEST_CASE("a result is told only after its file is found whole and journalled") 
   REQUIRE(checks.size() == 1);
   CHECK(checks[0].what == Check::What::result);
   CHECK(checks[0].attempt == 1);
-  CHECK(only<Check>(bench.result(key("job 1"))).empty());  // said again: it is being checked
+  CHECK(only<Check>(bench.result(key("job 1"))).empty());  // repeated while it is being checked
   const auto accepts = said<Accept>(bench.core.checked(checks[0], {}, bench.now));
   REQUIRE(accepts.size() == 1);
   CHECK(accepts[0].worker == WorkerId{3});
@@ -38,7 +38,7 @@ TEST_CASE("a damaged result and a failed job are rejected with their reasons") {
   CHECK(damaged[0].attempt == 4);
   CHECK(damaged[0].failure.reason == "it is damaged");
   CHECK(damaged[0].failure.kind == FailureKind::attempt);
-  CHECK(damaged[0].file == checks.at(0).output.file);  // for another reader to try
+  CHECK(damaged[0].file == checks.at(0).output.file);  // so that another reader can try it
   const JobFailure full{"no room", FailureKind::no_space};
   const auto failed =
       said<Reject>(bench.core.on_result(Result{7, 1, {3}, 5, 1, key("job 1"), full, {}}));
@@ -68,7 +68,7 @@ TEST_CASE("what a journal knows is looked at, and told to each ventilator before
   const JobKey gone = key("job 1");
   SinkBench bench(3, {{known, result_of(known)}, {gone, result_of(gone)}, {{1}, result_of({1})}});
   const auto checks = only<Check>(bench.join(1));
-  REQUIRE(checks.size() == 2);  // what no job is for is left alone
+  REQUIRE(checks.size() == 2);  // a result that belongs to no job is left alone
   CHECK(checks[0].what == Check::What::known);
   CHECK(said<Ready>(bench.core.checked(checks[0], {}, bench.now))
             .empty());  // one is still being checked
@@ -172,7 +172,7 @@ TEST_CASE("a sink does not wait for room when what it had none for is damaged by
   REQUIRE(again.size() == 2);
   const JobFailure damaged{"it is damaged", FailureKind::attempt};
   CHECK(said<Reject>(bench.core.checked(again[0], damaged, bench.now)).size() == 1);
-  CHECK(bench.core.waits_for_room());  // the other may still find none
+  CHECK(bench.core.waits_for_room());  // the other one may still find no room
   CHECK(said<Reject>(bench.core.checked(again[1], damaged, bench.now)).size() == 1);
   CHECK_FALSE(bench.core.waits_for_room());
 }
@@ -225,7 +225,7 @@ TEST_CASE("a job of the sink is done there, verified, journalled and told as oth
   CHECK(accepts[0].key == key("own"));
   CHECK(accepts[0].worker == WorkerId{});
   CHECK(only<MakeOutput>(accepted).size() == 1);
-  // No worker would say it again if the ventilator did not hear it.
+  // No worker would repeat it if the ventilator did not hear it.
   CHECK(said<Accept>(bench.silence(FarmTime(1000))).size() == 1);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// What the sink accepts by a look, and what it does when that turns out to be damaged.
+// Results that the sink accepts after a mere look, and what it does when they prove to be damaged.
 #include <string>
 #include <vector>
 
@@ -12,7 +12,7 @@
 namespace meshfarm::test {
 namespace {
 
-/// Two jobs of workers, one that needs them, and one that needs that.
+/// Two jobs of workers, a job that needs both, and one that needs that job.
 JobSource chain() {
   return in_stages({{make_job("job 0"), make_job("job 1")}, {make_job("then")}, {make_job("end")}});
 }
@@ -55,14 +55,14 @@ TEST_CASE("what is damaged is taken back, as by a new sink that has the others")
   }
   const SinkActions again = bench.core.tick(bench.now);
   CHECK(only<HangUp>(again).size() == 1);
-  CHECK(only<Check>(again).empty());  // the others are known to be whole
+  CHECK(only<Check>(again).empty());  // the other results are known to be whole
   CHECK(only<DoHere>(again).empty());
   const SinkActions told = bench.join(1);
   CHECK(said<Accept>(told).size() == 1);
   CHECK(said<Accept>(told).at(0).key == key("job 0"));
   CHECK(said<Ready>(told).at(0).accepted == 1);
   CHECK(said<Ready>(told).at(0).unverified == 0);
-  // It is made again: what was made from it stays as it is, from the journal or not.
+  // The damaged result is made again. Results made from it are kept, from the journal or not.
   const auto checks = only<Check>(bench.result(key("job 1"), 1, 2));
   REQUIRE(checks.size() == 1);
   const SinkActions rest = bench.core.checked(checks[0], {}, bench.now);
@@ -92,7 +92,7 @@ JobOutput large(JobOutput output) {
   return output;
 }
 
-/// Its file is there, of its size. Returns what is to be read then.
+/// Its file exists and has the right size. Returns what is to be read next.
 Check accept_large(SinkBench& bench, JobKey of) {
   const auto looks = only<Check>(
       bench.core.on_result(Result{7, 1, {3}, 5, 1, of, large(result_of(of)), {1, 2, 3, 4}}));
@@ -151,7 +151,7 @@ TEST_CASE("a worker that reads a damaged result first costs its host nothing") {
   REQUIRE(reads.size() == 2);
   const JobFailure failure{"damaged", FailureKind::damaged_input};
   const Message failed = Result{7, 1, {3}, 5, 1, key("then"), failure, {}};
-  CHECK(bench.core.on_result(failed).empty());  // the worker says it again
+  CHECK(bench.core.on_result(failed).empty());  // the worker repeats it
   bool damaged = false;
   SUBCASE("its host reads what is whole") {}
   SUBCASE("it is damaged") {
@@ -162,7 +162,7 @@ TEST_CASE("a worker that reads a damaged result first costs its host nothing") {
   bench.core.tick(bench.now);
   if (damaged) {
     bench.join(1);
-    CHECK(bench.core.on_result(failed).empty());  // not wanted now
+    CHECK(bench.core.on_result(failed).empty());  // not wanted at the moment
     bench.accept(reads[0].key);
   }
   const auto told = said<Reject>(bench.core.on_result(failed));
@@ -178,16 +178,16 @@ TEST_CASE("an input that is no result may be damaged: nobody waits to say so") {
   CHECK(said<Reject>(bench.core.on_result(failed)).size() == 1);
 }
 
-// --- what is left to its readers
+// --- results that are checked by their readers
 
-/// The first jobs' results are for workers alone.
+/// The first jobs' results are read by workers only.
 JobSource chain_of_sections() {
   std::vector<Job> first = {make_job("job 0"), make_job("job 1")};
   for (Job& each : first) each.left_to_readers = true;
   return in_stages({first, {make_job("then")}, {make_job("end")}});
 }
 
-/// Its file is there, of its size: nothing is read.
+/// Its file exists and has the right size: nothing is read.
 void leave_large(SinkBench& bench, JobKey of) {
   const auto looks = only<Check>(
       bench.core.on_result(Result{7, 1, {3}, 5, 1, of, large(result_of(of)), {1, 2, 3, 4}}));
@@ -228,7 +228,7 @@ TEST_CASE("what was left to its readers is read once one of them finds damage") 
     bench.core.checked(reads[1], {}, bench.now);
     CHECK(only<HangUp>(bench.core.tick(bench.now)).size() == 1);
     CHECK(said<Ready>(bench.join(1)).at(0).accepted == 1);
-    // From now on all is verified first.
+    // From now on everything is verified first.
     const auto checks = only<Check>(bench.core.on_result(
         Result{7, 1, {3}, 5, 2, reads[0].key, large(result_of(reads[0].key, 2)), {}}));
     REQUIRE(checks.size() == 1);

@@ -21,7 +21,7 @@ std::vector<A> only_action(const WorkerActions& actions) {
   return found;
 }
 
-/// The last credit that is announced among the actions; 0 if none is.
+/// The last credit announced among the actions; 0 if there is none.
 std::uint64_t credit_in(const WorkerActions& actions) {
   std::uint64_t credit = 0;
   for (const Say& say : only_action<Say>(actions)) {
@@ -34,7 +34,7 @@ Endpoint endpoint(std::uint32_t epoch) {
   return {epoch, 7, "tcp://v:" + std::to_string(epoch), "h", 1};
 }
 
-/// A worker and a clock.
+/// A worker with a clock.
 struct WorkerBench {
   explicit WorkerBench(std::uint32_t buffer = 5, std::uint32_t slots = 1, std::uint64_t memory = 0)
       : core({Role::worker, 0, 99, 1, "h", {}, FarmTime(10'000)}, {buffer, slots, memory}) {}
@@ -59,12 +59,12 @@ struct WorkerBench {
 
 TEST_CASE("a batch is asked for when the buffer is less than 0.8 full") {
   WorkerBench bench(5);
-  CHECK(credit_in(bench.join(1)) == 6);  // five wait beside the one in work
+  CHECK(credit_in(bench.join(1)) == 6);  // one in work, and five waiting
   CHECK(only_action<Begin>(bench.job(1, "1")).size() == 1);
   for (std::uint64_t seq = 2; seq <= 6; ++seq)
     CHECK(only_action<Begin>(bench.job(seq, "x")).empty());
   CHECK(bench.core.waiting() == 5);
-  CHECK(credit_in(bench.finish()) == 0);  // 4 of 5 wait: 0.8, not less
+  CHECK(credit_in(bench.finish()) == 0);  // 4 of 5 wait: that is 0.8, not less
   CHECK(credit_in(bench.finish()) == 8);  // 3 of 5 wait, one is in work: room for two more
 }
 
@@ -99,7 +99,7 @@ TEST_CASE("a result is kept, and said again, until it is done") {
   CHECK(only_action<SendResult>(bench.core.tick({}, bench.now)).empty());
   bench.now += FarmTime(2500);
   CHECK(only_action<SendResult>(bench.core.tick({}, bench.now)).size() == 1);
-  bench.core.on_control(Done{key, 4}, bench.now);  // an earlier attempt is meant
+  bench.core.on_control(Done{key, 4}, bench.now);  // refers to an earlier attempt
   CHECK(bench.core.unacknowledged() == 1);
   bench.core.on_control(Done{key, 5}, bench.now);
   CHECK(bench.core.unacknowledged() == 0);
@@ -109,7 +109,7 @@ TEST_CASE("a new sink is told at once what is not acknowledged") {
   WorkerBench bench;
   bench.join(1, "");
   bench.job(1, "1");
-  CHECK(only_action<SendResult>(bench.finish()).empty());  // nobody to tell
+  CHECK(only_action<SendResult>(bench.finish()).empty());  // there is nobody to tell
   const WorkerActions told = bench.core.on_control(SinkAt{"sink"}, bench.now);
   REQUIRE(only_action<ConnectSink>(told).size() == 1);
   CHECK(only_action<ConnectSink>(told)[0].address == "sink");
@@ -150,7 +150,7 @@ TEST_CASE("a worker looks for a ventilator at once and often, then less and less
   CHECK(looks[2] == 15);
   CHECK(looks.back() - looks[looks.size() - 2] >= 500);
 
-  // One that was found is given time to answer.
+  // A ventilator that was found is given time to answer.
   const Endpoint there = endpoint(1);
   CHECK(only_action<Dial>(bench.core.found({&there, 1}, bench.now)).size() == 1);
   CHECK(only_action<Look>(bench.core.tick({}, bench.now + FarmTime(45))).empty());
@@ -354,8 +354,8 @@ TEST_CASE("a heartbeat tells of the job that stands still the longest") {
   CHECK(told.still_ms == 2000);
   CHECK(told.still == key_of(make_job("2")));
   CHECK(told.in_storage);
-  CHECK(beat({}).still_ms == 0);  // nothing is known of the slots
-  // A ventilator that took the jobs back does not hear of them again.
+  CHECK(beat({}).still_ms == 0);  // nothing is known about the slots
+  // A ventilator that took the jobs back is not told of them again.
   bench.core.on_control(Refused{Refusal::stranger, "it waits for the stage"}, bench.now);
   bench.join(2);
   bench.now += FarmTime(1000);
@@ -378,7 +378,7 @@ TEST_CASE("a job that gets little of a busy processor is judged by what it gets"
   CHECK(still({1, computing, 20'000}) == 19'500);
   CHECK(still({2, computing, 21'000}) == 0);
   CHECK(still({2, computing, 40'000}) == 10'000);  // more than there was: of two clocks
-  // One that waits for a lock, and one that waits for the stage.
+  // A slot that waits for a lock, then for the stage.
   CHECK(still({3, computing, 40'000}) == 0);
   CHECK(still({3, computing, 40'009}) == 10'000);
   CHECK(still({3, storage, 50'000}) == 0);
