@@ -21,7 +21,7 @@
 
 namespace meshfarm::test {
 
-/// What the trivial job publishes: its own parameters, turned round.
+/// What the trivial job publishes: its own parameters, reversed.
 inline std::string reversed(const std::string& text) {
   return {text.rbegin(), text.rend()};
 }
@@ -33,7 +33,7 @@ inline JobOutput do_trivial_job(const Job& job, const JobContext& context) {
   return {context.stage.publish(name, bytes), bytes};
 }
 
-/// A thread that runs a part of the farm and keeps what came of it.
+/// A thread that runs one part of the farm and keeps the exception that ended it.
 class Part {
  public:
   explicit Part(std::function<void(const std::atomic<bool>& stop)> run)
@@ -55,7 +55,7 @@ class Part {
   void stop() { stop_ = true; }
   bool stopped() const { return stop_; }
   bool ended() const { return ended_; }
-  /// Waits for the end and rethrows what it threw.
+  /// Waits for the end and rethrows that exception.
   void join() {
     thread_.join();
     if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
@@ -68,7 +68,7 @@ class Part {
   std::thread thread_;
 };
 
-/// A stage in a temporary folder, and quick options for the three parts.
+/// A stage in a temporary folder, and options for the three parts that make them quick.
 struct Farm {
   TempFolder folder;
   Stage stage = Stage::create(folder / "stage");

@@ -24,7 +24,7 @@ inline std::vector<std::string> expected_of(std::size_t jobs) {
   return expected;
 }
 
-/// Runs the three parts to their end and returns the outputs' summaries.
+/// Runs the three parts to the end and returns the outputs' summaries.
 inline std::vector<std::string> run_farm(Farm& farm, const JobSource& source, int workers,
                                          const JobFunction& work = do_trivial_job) {
   std::vector<std::string> summaries;
@@ -35,7 +35,7 @@ inline std::vector<std::string> run_farm(Farm& farm, const JobSource& source, in
   sink.join();
   ventilator.join();
   for (auto& worker : crew) {
-    // One that came when all was over waits for another run, as it should.
+    // A worker that came after the run was over waits for another run, as it should.
     if (!worker->ended()) worker->stop();
     try {
       worker->join();
@@ -46,7 +46,7 @@ inline std::vector<std::string> run_farm(Farm& farm, const JobSource& source, in
   return summaries;
 }
 
-/// The trivial job, its attempts counted.
+/// The trivial job, with its attempts counted.
 inline JobFunction counted(std::atomic<int>& attempts) {
   return [&attempts](const Job& job, const JobContext& context) {
     ++attempts;
@@ -54,10 +54,10 @@ inline JobFunction counted(std::atomic<int>& attempts) {
   };
 }
 
-/// The jobs that were done by several workers. On a busy machine some are attempted twice.
+/// The jobs done by several workers. On a busy machine some are attempted twice.
 class DoneJobs {
  public:
-  /// The trivial job, noted here.
+  /// The trivial job, recorded here.
   JobFunction noting() {
     return [this](const Job& job, const JobContext& context) {
       {
@@ -67,7 +67,7 @@ class DoneJobs {
       return do_trivial_job(job, context);
     };
   }
-  /// How many since it was asked last. Asked when no worker runs.
+  /// The number of jobs since the last call. To be called while no worker runs.
   std::size_t take() { return std::exchange(jobs_, {}).size(); }
 
  private:
@@ -75,7 +75,7 @@ class DoneJobs {
   std::set<std::string> jobs_;
 };
 
-/// The trivial job, as slow as a few heartbeats are long in all.
+/// The trivial job, slow enough that all jobs together take a few heartbeats.
 inline JobOutput do_slow_job(const Job& job, const JobContext& context) {
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
   return do_trivial_job(job, context);

@@ -27,7 +27,7 @@ struct Server {
     gate.watch(results);
     address = bind_within(results, "127.0.0.1", {});
   }
-  /// Whether a message comes within the time.
+  /// Whether a message arrives within `patience`.
   bool hears(std::chrono::milliseconds patience) {
     std::vector<zmq::pollitem_t> items = {{results.handle(), 0, ZMQ_POLLIN, 0}};
     wait_for(items, patience);
@@ -51,7 +51,7 @@ struct Server {
   std::string address;
 };
 
-/// Says one word with the given keys.
+/// Sends one message with the given keys.
 struct Client {
   Client(const Server& server, const Keys& keys) : push(make_results_client(context, keys)) {
     push.set(zmq::sockopt::linger, 0);
@@ -62,7 +62,7 @@ struct Client {
   zmq::socket_t push;
 };
 
-/// Connects so many times, and leaves without a word.
+/// Connects `times` times, and leaves without a message each time.
 void come_and_go(const Server& server, int times) {
   sockaddr_in to{};
   to.sin_family = AF_INET;

@@ -16,7 +16,7 @@
 namespace meshfarm::test {
 namespace {
 
-/// What the slot makes of a job that publishes what it reads, one section behind the other.
+/// The slot's outcome for a job that publishes what it reads, section after section.
 JobOutcome outcome_of(const Stage& stage, const Job& job) {
   const JobFunction work = [](const Job& given, const JobContext& context) {
     std::string read;
@@ -79,7 +79,7 @@ TEST_CASE("a job that reads much waits for its turn, one that reads little does 
   };
   WorkerGates gates(1);
   const std::atomic<bool> never{false};
-  REQUIRE(gates.reading.enter(never));  // as another slot that reads much
+  REQUIRE(gates.reading.enter(never));  // like another slot that reads a lot
   JobSlot slot(stage, work, gates, 7);
   const auto begin = [&](std::size_t bytes) {
     Job job{"read", {stage.publish(PartName{0}, std::string(bytes, 'x'))}, {}, 1};

@@ -228,7 +228,7 @@ TEST_CASE("a job that hangs is taken from its worker, which is told to end its p
   CHECK_THROWS_AS(hung.join(), IncompleteError);
   CHECK(begun);
   CHECK(why.find("stood still") != std::string::npos);
-  // A busy host makes the next one stand still, too: then there is another one.
+  // On a busy host the next worker may stand still, too: then another one is started.
   Part workers([&](const std::atomic<bool>& stop) {
     for (bool done = false; !done && !stop;) {
       try {

@@ -16,7 +16,8 @@ namespace {
 
 TEST_CASE("an accepted output that the source cannot read any more is set aside and made again") {
   Farm farm;
-  // What a journal of another build may hold: all is whole, but a summary means nothing here.
+  // As the journal of another build may hold it: all files are whole, but one summary is
+  // meaningless.
   const JobFunction garbled = [](const Job& job, const JobContext& context) {
     JobOutput output = do_trivial_job(job, context);
     if (job.parameters == "job 3") output.summary = "garbled";
@@ -149,7 +150,7 @@ TEST_CASE("a sink that is stopped while it makes its output tells of the stop al
 
 TEST_CASE("a sink that is stopped and started again goes on") {
   Farm farm;
-  // No second attempts, and no worker taken for lost where the machine is busy: each job is once.
+  // No second attempts, and no worker declared lost on a busy machine: each job is done once.
   farm.schedule = {.schedule = Schedule::fixed, .expect_workers = 2};
   farm.heartbeat = std::chrono::seconds(10);
   std::atomic<std::uint64_t> done{0};
@@ -175,7 +176,7 @@ TEST_CASE("a sink that is stopped and started again goes on") {
   other.join();
   CHECK(none.empty());
   CHECK(summaries == expected_of(300));
-  CHECK(count == 300);  // what was done while no sink was there was sent again, not done again
+  CHECK(count == 300);  // results made while there was no sink were sent again, not made again
 }
 
 TEST_CASE("a sink of another run is not served") {

@@ -24,8 +24,8 @@ TEST_CASE("signals do not keep messages from being sent") {
   const std::string address = bind_within(server, "127.0.0.1", {});
   zmq::socket_t client = make_control_client(context, {}, 7);
   client.connect(address);
-  send(client, Complete{1});  // libzmq's threads are there from here on: the kernel makes none
-  const itimerval often{{0, 50}, {0, 50}};  // while signals come faster than it can
+  send(client, Complete{1});  // libzmq's threads exist from here on; the kernel can start none
+  const itimerval often{{0, 50}, {0, 50}};  // while signals arrive this fast
   ::setitimer(ITIMER_REAL, &often, nullptr);
   const auto begin = std::chrono::steady_clock::now();
   CHECK_NOTHROW([&] {
@@ -42,7 +42,7 @@ TEST_CASE("signals do not keep messages from being sent") {
 }
 
 TEST_CASE("a process that is behind with its messages outlives whoever sent them") {
-  // With libzmq's own heartbeats this ended in an assertion of libzmq, and so of the process.
+  // With libzmq's own heartbeats an assertion in libzmq failed here, and ended the process.
   zmq::context_t here{1};
   zmq::socket_t results = make_results_server(here, {});
   const std::string address = bind_within(results, "127.0.0.1", {});
@@ -55,7 +55,7 @@ TEST_CASE("a process that is behind with its messages outlives whoever sent them
     std::vector<zmq::pollitem_t> items = {{results.handle(), 0, ZMQ_POLLIN, 0}};
     wait_for(items, std::chrono::seconds(10));
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  }  // gone, with most of it not taken
+  }  // gone, with most messages not taken yet
   std::this_thread::sleep_for(std::chrono::milliseconds(2500));
   std::uint64_t next = 0;
   while (auto received = receive(results)) {

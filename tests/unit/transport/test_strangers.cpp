@@ -35,7 +35,7 @@ Endpoint wait_for_endpoint(const Stage& stage) {
   return list.look(stage).back();
 }
 
-/// The next message of type M, others are skipped; nothing if there is none in time.
+/// The next message of type M, skipping others; nothing if none arrives in time.
 template <class M>
 std::optional<M> wait_for_message(zmq::socket_t& socket, std::chrono::milliseconds patience) {
   const auto end = std::chrono::steady_clock::now() + patience;
@@ -52,7 +52,7 @@ std::optional<M> wait_for_message(zmq::socket_t& socket, std::chrono::millisecon
   }
 }
 
-/// A worker played by hand.
+/// A worker operated by hand.
 struct FakeWorker {
   FakeWorker(const Stage& stage, const Endpoint& endpoint)
       : keys(keys_to_connect(stage, endpoint, {})),
@@ -73,7 +73,7 @@ struct FakeWorker {
   Welcome welcome;
 };
 
-/// What connects to tcp://127.0.0.1:port, sends bytes that are no ZMTP, and hangs up.
+/// Connects to tcp://127.0.0.1:port, sends bytes that are not ZMTP, and hangs up.
 void send_raw(const std::string& address, const std::string& bytes) {
   const auto port = static_cast<std::uint16_t>(std::stoi(address.substr(address.rfind(':') + 1)));
   const Fd fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
@@ -82,7 +82,7 @@ void send_raw(const std::string& address, const std::string& bytes) {
   to.sin_port = htons(port);
   to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   REQUIRE(::connect(fd.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0);
-  // The other side may hang up at any byte: whether all was taken is not of interest.
+  // The other side may hang up at any byte: a partial send is fine.
   [[maybe_unused]] const auto sent = ::send(fd.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
@@ -143,7 +143,7 @@ std::vector<std::string> framed_garbage(std::uint32_t epoch) {
 void send_framed(zmq::socket_t& socket, const std::vector<std::string>& frames) {
   for (const std::string& frame : frames)
     socket.send(zmq::buffer(frame), zmq::send_flags::dontwait);
-  for (const std::string& frame : frames) {  // the same as one message of many frames
+  for (const std::string& frame : frames) {  // the same frames as one message
     socket.send(zmq::buffer(frame), zmq::send_flags::dontwait | zmq::send_flags::sndmore);
   }
   socket.send(zmq::buffer(std::string("end")), zmq::send_flags::dontwait);
@@ -236,12 +236,12 @@ TEST_CASE("a worker gets no more than its credit, and if it falls silent others 
 
 TEST_CASE("fifty thousand jobs go through one lane, each once and in order") {
   Farm farm;
-  // Longer than anything is waited for: these say nothing meanwhile.
+  // Longer than any wait: the peers operated by hand send no heartbeats.
   farm.heartbeat = std::chrono::milliseconds(20'000);
   const JobSource source = one_stage(50'000);
   Part ventilator(farm.ventilator(source));
   const Endpoint endpoint = wait_for_endpoint(farm.stage);
-  // A sink without a disk: accepts whatever it hears of.
+  // A sink without a disk: it accepts every result that it hears of.
   zmq::context_t context(1);
   zmq::socket_t sink =
       make_control_client(context, keys_to_connect(farm.stage, endpoint, {}), random_id());
