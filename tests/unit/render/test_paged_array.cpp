@@ -13,7 +13,7 @@ using namespace meshfarm;
 
 TEST_CASE("an array in a scratch file is one in memory, in whatever order it is used") {
   constexpr std::uint64_t k_count = 100'001;
-  constexpr std::uint64_t k_stride = 70'003;  // without a common factor
+  constexpr std::uint64_t k_stride = 70'003;  // coprime to k_count
   const test::TempFolder folder;
   for (const std::uint64_t memory : {std::uint64_t{0}, std::uint64_t{1} << 20}) {
     CAPTURE(memory);

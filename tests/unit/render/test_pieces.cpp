@@ -11,12 +11,12 @@ using namespace meshfarm;
 
 namespace {
 
-/// Every triangle has corners of its own; those of one strip touch at places that are far apart in
-/// the list, so that only places join them.
+/// Every triangle has its own corners. Those of one strip touch, but are far apart in the list, so
+/// that only equal positions join them.
 struct Strips {
   static constexpr std::uint64_t k_strips = 7;
   static constexpr std::uint64_t k_triangles = 30'000;
-  static constexpr std::uint64_t k_stride = 12'347;  // without a common factor
+  static constexpr std::uint64_t k_stride = 12'347;  // coprime to k_triangles
 
   std::vector<ScreenPoint> places;
   std::vector<WideTriangle> triangles;

@@ -21,7 +21,7 @@ using namespace meshfarm;
 
 namespace {
 
-/// A mesh whose vertices have one value of each channel.
+/// A mesh whose vertices have one value per channel.
 class ValuedSource : public test::MemorySource {
  public:
   ValuedSource(const Mesh& mesh, std::vector<Channel> channels, std::vector<float> values)
@@ -55,7 +55,7 @@ Srgb colour_at(Texels& picture, std::uint32_t x, std::uint32_t y) {
   return {texel[0], texel[1], texel[2]};
 }
 
-/// A square of this half width that faces the front.
+/// A square of half width `half` that faces the front.
 void add_square(Mesh& mesh, double half, double z) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
@@ -65,7 +65,7 @@ void add_square(Mesh& mesh, double half, double z) {
   mesh.triangles.push_back({first, first + 2, first + 3});
 }
 
-/// The colours that many pixels have: more than there are at edges.
+/// The colours of at least `at_least` pixels each: more than edges have.
 std::set<Srgb> main_colours(Texels picture, std::size_t at_least = 1000) {
   std::map<Srgb, std::size_t> pixels;
   for (std::uint32_t y = 0; y < picture.height; ++y) {
@@ -231,7 +231,7 @@ TEST_CASE("a number is coloured by its scale, with a legend beside the mesh") {
   options.colour_by = ColourBy::channel;
   options.channel = "heat";
   CHECK(render_mesh(source, options).picture.bytes == made.picture.bytes);
-  options.range = {{20, 30}};  // all is at its lower end
+  options.range = {{20, 30}};  // everything is at its lower end
   made = render_mesh(source, options);
   CHECK(main_colours(made.picture).size() == 2);
   ValuedSource without(mesh, channels, {NAN, NAN, NAN, NAN});

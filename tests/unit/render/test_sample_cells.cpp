@@ -19,8 +19,8 @@ Camera camera_of(const Mesh& mesh, const View& view, double width) {
   return framing.camera();
 }
 
-/// By the exact projection: a triangle between two neighbouring columns or rows has no middle of a
-/// sample.
+/// By the exact projection: a triangle between two neighbouring columns or rows of sample centres
+/// covers no sample.
 bool covers_none(const Camera& camera, const Mesh& mesh, const Triangle& t) {
   const ScreenPoint a = camera.project(mesh.positions[t[0]]);
   const ScreenPoint b = camera.project(mesh.positions[t[1]]);
@@ -32,10 +32,10 @@ bool covers_none(const Camera& camera, const Mesh& mesh, const Triangle& t) {
   return between(a.x, b.x, c.x) || between(a.y, b.y, c.y);
 }
 
-/// How many triangles may cover a sample, in pictures in which they surely do not.
+/// may_cover() compared with the exact projection, counted over triangles and pictures.
 struct Told {
-  std::uint64_t wrong = 0;    // none is, where one may be
-  std::uint64_t in_vain = 0;  // one may be, where none is
+  std::uint64_t wrong = 0;    // may cover a sample, but is said not to
+  std::uint64_t in_vain = 0;  // covers no sample, but is said to
   std::uint64_t none = 0;
 };
 

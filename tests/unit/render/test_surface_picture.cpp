@@ -32,7 +32,7 @@ Camera camera_for(const RenderOptions& options, const Mesh& mesh) {
 }
 
 Mesh some_mesh() {
-  return test::torus(60, 200);  // of triangles as small as samples, and smaller ones
+  return test::torus(60, 200);  // with triangles as small as samples, and smaller
 }
 
 }  // namespace
