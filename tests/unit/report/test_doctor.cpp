@@ -11,7 +11,7 @@ using namespace meshfarm;
 
 namespace {
 
-/// A stage as it should be: a hard NFSv4.2 mount, room, quick, one host.
+/// A healthy stage: a hard NFSv4.2 mount with room, quick, one host.
 DoctorFacts healthy() {
   DoctorFacts facts;
   facts.stage = "/nfs/stage";
@@ -32,7 +32,7 @@ DoctorFacts healthy() {
   return facts;
 }
 
-/// The worst verdict on a check; good if there is none of that name.
+/// The worst verdict of a check; good if there is none of that name.
 Verdict verdict_on(const std::string& check, const std::function<void(DoctorFacts&)>& change) {
   DoctorFacts facts = healthy();
   change(facts);
@@ -97,7 +97,7 @@ TEST_CASE("what costs time, or only looks odd, is noted") {
 
 TEST_CASE("the same for programs") {
   DoctorFacts facts = healthy();
-  facts.doubled_names = {"pc\xff"};  // whatever a host card says
+  facts.doubled_names = {"pc\xff"};  // a host card may contain any bytes
   const std::string json = render(facts, diagnose(facts), Format::json);
   CHECK(json.find("\"healthy\": false") != std::string::npos);
   CHECK(json.find("\"verdict\": \"bad\"") != std::string::npos);

@@ -104,7 +104,7 @@ TEST_CASE("a run's summary warns of a bound that a sampled point breaks") {
   s.dropped_components.components = 3;
   CHECK(warning_of(s).find("--certify") == std::string::npos);
   s.dropped_components = {};
-  s.certified_error = 0.1 + 1e-9;  // with the rounding of the output
+  s.certified_error = 0.1 + 1e-9;  // rounding of the output included
   CHECK(warning_of(s).find("is not kept everywhere") != std::string::npos);
   CHECK(warning_of(s).find("--certify") == std::string::npos);
   s.error.to_output.max = s.error.to_input.max = 0.1 + 1e-10;

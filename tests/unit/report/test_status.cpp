@@ -51,7 +51,7 @@ TEST_CASE("the status of a run in progress") {
   CHECK(status_has(text, "1 of 4 done, 2 running, 0 failed, 1 retried"));
   CHECK(status_has(text, "sort 3 of 3, climb 0 of 1"));
   CHECK(status_has(text, "epoch 2 on here, for 13 s"));
-  // 6 M in 5 s (from the job's begin to the state), 18 M are left.
+  // 6 M in 5 s (from the job's start to the state), 18 M are left.
   CHECK(status_has(text, "1.2 M triangles/s, farm done in 15 s"));
   CHECK(status_has(text, "fast:11"));
   CHECK(status_has(text, "3.5 s ago"));  // the state itself is three seconds old

@@ -10,7 +10,7 @@
 namespace meshfarm {
 namespace {
 
-/// Half done, by two workers of which one is twice as fast.
+/// Half done, by two workers, one of them twice as fast.
 StatusFacts facts_for_screen() {
   StatusFacts facts;
   facts.stage = "dragon.stage";
@@ -54,7 +54,7 @@ TEST_CASE("a screen shows how far a run is, its stages, and what each worker did
   CHECK(screen_has(text, "climb"));
   CHECK(screen_has(text, "fast:11"));
   const auto count = [&](char c) { return std::count(text.begin(), text.end(), c); };
-  CHECK(count('=') > 0);  // jobs that are held
+  CHECK(count('=') > 0);  // jobs held by workers
   CHECK(count('#') > 0);
 }
 
