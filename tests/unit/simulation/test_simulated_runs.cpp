@@ -14,7 +14,7 @@ namespace {
 
 using Serves = SimulatedWorker::Serves;
 
-/// Two runs of one stage, and what must come of each.
+/// Two runs of one stage, and their expected outcomes.
 struct TwoRuns {
   JobSource source = simulated_jobs(80);
   JobSource other = simulated_jobs(60, "other ");

@@ -16,7 +16,7 @@ struct Farm {
   std::uint64_t jobs;
 };
 
-/// Histories of a few workers, each of which once found a fault.
+/// Histories of a few workers, each of which once revealed a bug.
 void check_each(const std::vector<Farm>& farms) {
   for (const Farm& farm : farms) {
     CAPTURE(farm.seed);

@@ -86,7 +86,8 @@ TEST_CASE("the journal may fail, and be full") {
   check_seeds({.sink_crashes = 3, .disk_fills = 4}, 50);
 }
 
-/// As farm_of(), with a host each: in how many histories of so many a host was banned.
+/// Like farm_of(), but with one host per worker: the number of histories in which a host was
+/// banned.
 int bans_in(const SimulatedFaults& faults, std::uint64_t seeds) {
   const JobSource source = simulated_jobs(120);
   const std::vector<std::string> expected = expected_summaries(source);
@@ -108,7 +109,8 @@ TEST_CASE("a sink that cannot read what others can costs no host its name") {
 }
 
 TEST_CASE("parts that nobody can read for minutes cost no host its name") {
-  // One may be well again just when another tries: that is held against the first, but seldom.
+  // A part may be readable again just when another host tries: then the first is blamed, but
+  // rarely.
   CHECK(bans_in({.lost_parts = 0.15}, 60) <= 1);
 }
 
@@ -234,7 +236,7 @@ TEST_CASE("a host keeps the last that it has read, as far as there is memory") {
   CHECK(cache.has(1) == 40);
   CHECK(cache.has(2) == 50);
   CHECK(cache.has(0) == 0);
-  cache.keep({0, 20}, 100);  // what nobody else reads
+  cache.keep({0, 20}, 100);  // data that nobody else reads
   CHECK(cache.has(1) == 0);
   CHECK(cache.has(2) == 50);
   cache.keep({3, 101}, 100);
