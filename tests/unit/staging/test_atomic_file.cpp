@@ -72,7 +72,7 @@ TEST_CASE("processes of equal numbers in two containers write under names of the
   const auto name = std::filesystem::directory_iterator(folder.path())->path().filename().string();
   const auto dash = name.find(std::to_string(::getpid()) + "-");
   REQUIRE(dash != std::string::npos);
-  // Beside the number it has one that is drawn: sixteen hexadecimal digits.
+  // The process id is followed by a random number: sixteen hexadecimal digits.
   const auto drawn = name.substr(name.find('-', dash) + 1, 16);
   CHECK(drawn.size() == 16);
   CHECK(drawn.find_first_not_of("0123456789abcdef") == std::string::npos);

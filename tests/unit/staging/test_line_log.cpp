@@ -17,7 +17,7 @@ using namespace meshfarm;
 
 namespace {
 
-/// Whether the file holds the text within ten seconds.
+/// Whether the file's content becomes `text` within ten seconds.
 bool comes_to_hold(const std::filesystem::path& path, const std::string& text) {
   for (int i = 0; i < 1000; ++i) {
     if (std::filesystem::exists(path) && read_file(path) == text) return true;
@@ -30,7 +30,7 @@ bool comes_to_hold(const std::filesystem::path& path, const std::string& text) {
 
 TEST_CASE("lines are there at the latest when their log is gone, in order") {
   test::TempFolder folder;
-  const auto path = folder / "log" / "lines";  // the folder is made
+  const auto path = folder / "log" / "lines";  // the folder is created
   std::string expected;
   {
     LineLog log(path);

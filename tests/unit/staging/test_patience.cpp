@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// What fails with `error` so often, and then does not; counts its calls.
+/// Fails with `error` `times` times, then succeeds; counts its calls.
 struct Failing {
   int error = 0;
   int times = 0;

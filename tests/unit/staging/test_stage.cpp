@@ -33,7 +33,7 @@ TEST_CASE("a published file is read back by its reference") {
   CHECK(stage.read(PartName{3}) == "content");
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(stage.root() / "parts")) {
-    CHECK(entry.path().filename() == "000003.part");  // and no temporary one
+    CHECK(entry.path().filename() == "000003.part");  // no temporary file is left
     ++files;
   }
   CHECK(files == 1);
@@ -74,7 +74,7 @@ TEST_CASE("a section of a file is read by its own checksum, and as patiently") {
                                    FileSection{UINT64_MAX, 2, 0}, FileSection{2, UINT64_MAX, 0}}) {
     CHECK_THROWS_AS(stage.read(file, beyond, k_no_patience), UnreadDataError);
   }
-  std::ofstream(path) << "HEAD content tail";  // others are not asked
+  std::ofstream(path) << "HEAD content tail";  // bytes outside the section are not checked
   CHECK(stage.read(file, content, k_no_patience) == "content");
   std::ofstream(path) << "head contenT tail";
   CHECK_THROWS_AS(stage.read(file, content, k_no_patience), UnreadDataError);
@@ -183,7 +183,7 @@ TEST_CASE("a file that is missing is waited for by the clock, and every look is 
   std::uint64_t bytes = 0;
   patience.moved = [&](std::uint64_t more) {
     bytes += more;
-    // Later than five attempts would have lasted, as a negative answer that NFS remembers.
+    // It appears later than five attempts would last, as after a negative lookup cached by NFS.
     if (++looks == 8) std::filesystem::rename(hidden, stage.path(PartName{1}));
   };
   CHECK(stage.read(file, patience) == "content");
