@@ -22,7 +22,7 @@ TEST_CASE("buckets give back what each was given, through full buffers and past 
   SUBCASE("all in memory") {
     memory_bytes = 800'000;
   }
-  BucketFile buckets(folder.path(), 10'000, memory_bytes);  // buffers of the smallest size
+  BucketFile buckets(folder.path(), 10'000, memory_bytes);  // the smallest buffers
   for (std::uint32_t i = 0; i < 200'000; ++i) buckets.put(i % 7, i);
   buckets.finish();
   for (std::uint32_t b = 0; b < 7; ++b) {

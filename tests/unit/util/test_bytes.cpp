@@ -28,7 +28,7 @@ TEST_CASE("a reader gives back what the writer took") {
 
 TEST_CASE("a reader refuses whatever runs past the end") {
   ByteWriter out;
-  out.put(std::uint32_t{0xffffffff});  // as a string's length: 4 GiB that are not there
+  out.put(std::uint32_t{0xffffffff});  // a string's length: 4 GiB that do not exist
   ByteReader string(out.bytes(), "test");
   CHECK_THROWS_WITH_AS(string.get_string(), "test: cut short at byte 4", DataError);
 

@@ -13,7 +13,7 @@
 namespace meshfarm {
 namespace {
 
-/// A tree of control groups that is made of plain files.
+/// A tree of control groups made of plain files.
 class MadeGroups {
  public:
   MadeGroups(const std::string& cgroup, const std::string& mountinfo) {
@@ -72,7 +72,7 @@ TEST_CASE("the least room of all groups above counts, and names its group") {
   const auto job = group_memory(two.view());
   CHECK(job->group != above->group);
   CHECK(job->group != 0);
-  two.put(top + "job_1/memory.high", "500");  // above it the kernel slows the group down
+  two.put(top + "job_1/memory.high", "500");  // above this limit the kernel slows the group down
   CHECK(two.room() == 100);
 
   MadeGroups one("4:memory:/slurm/uid_0/job_1", k_one);
@@ -100,11 +100,11 @@ TEST_CASE("of groups with one limit the outer one is named, whatever is counted 
   put(job + "step_0/task_0/", std::to_string(0x7ffffffffffff000), "120");
   const auto before = group_memory(slurm.view());
   CHECK(before->room == 1700);
-  put(job + "step_0/", "2000", "310");  // somebody ended before the job's count was read
+  put(job + "step_0/", "2000", "310");  // a process ended before the job's count was read
   const auto after = group_memory(slurm.view());
   CHECK(after->room == 1690);
   CHECK(after->group == before->group);
-  put(job + "step_0/", "500", "310");  // a step with less than the job has
+  put(job + "step_0/", "500", "310");  // a step with a lower limit than the job
   CHECK(group_memory(slurm.view())->room == 190);
   CHECK(group_memory(slurm.view())->group != before->group);
 }
