@@ -31,7 +31,7 @@ class Bench {
     po::notify(values);
   }
   std::string path() const { return (folder_.path() / "run.conf").string(); }
-  /// Without the folder.
+  /// The usage error's message, without the folder; empty if there is none.
   std::string error_of(const std::string& text) {
     try {
       fill(text);

@@ -20,7 +20,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// What `add` declares, filled from a command line and checked.
+/// The group that `add` declares, filled from a command line and checked.
 template <typename Group, typename Add>
 Group parse(const Words& words, const Add& add) {
   Group group;
@@ -45,7 +45,7 @@ TargetOptions target_of(const Words& words) {
   });
 }
 
-/// The usage error that the words end in; empty if they are taken.
+/// The usage error for these words; empty if they are accepted.
 template <typename Parse>
 std::string error_of(const Words& words, const Parse& parse_words) {
   try {
