@@ -30,7 +30,7 @@ TEST_CASE("pages are served to this host, and to who asks for it by its name") {
   CHECK(status("/b", "localhost") == 404);
   CHECK(client.Get("/a")->body == "A");
   CHECK(client.Get("/a")->has_header("Content-Security-Policy"));
-  // Not from the network.
+  // Not reachable from the network.
   if (const auto address = network_address()) {
     httplib::Client far(*address, server.port());
     CHECK_FALSE(far.Get("/a"));
