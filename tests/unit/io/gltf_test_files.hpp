@@ -34,7 +34,7 @@ inline std::string glb_file(const std::string& json, const std::string& binary) 
   return "glTF" + raw<std::uint32_t>({2, static_cast<std::uint32_t>(12 + chunks.size())}) + chunks;
 }
 
-/// The text with `from`, which stands in it once, replaced.
+/// The text with `from`, which must occur exactly once, replaced by `to`.
 inline std::string with(std::string text, std::string_view from, std::string_view to) {
   const std::size_t at = text.find(from);
   REQUIRE(at != std::string::npos);

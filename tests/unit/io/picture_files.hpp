@@ -31,7 +31,7 @@ inline Picture picture_of(std::uint32_t width, std::uint32_t height,
   return made;
 }
 
-/// Red goes up to the right, green downwards.
+/// Red increases to the right, green downwards.
 inline Picture gradient(std::uint32_t size) {
   return picture_of(size, size, [size](std::uint32_t x, std::uint32_t y) {
     return Texel{static_cast<std::uint8_t>(255 * x / (size - 1)),
@@ -39,7 +39,7 @@ inline Picture gradient(std::uint32_t size) {
   });
 }
 
-/// `format` is that of the texels, PNG_FORMAT_RGB for one.
+/// `format` describes the texels, for example PNG_FORMAT_RGB.
 inline std::string png_of(std::uint32_t width, std::uint32_t height, const void* texels,
                           png_uint_32 format) {
   png_image image{};
@@ -73,8 +73,7 @@ inline std::string jpeg_of(const Picture& picture, int flags = 0, int sampling =
   return made;
 }
 
-/// The colours of all vertices of a mesh file of which colours are the only channels, without
-/// alpha.
+/// The vertex colours of a mesh file whose only channels are colours without alpha.
 inline std::vector<std::array<float, 3>> colours_of(const std::filesystem::path& path,
                                                     const OpenOptions& options = {
                                                         .textures = Textures::bake}) {

@@ -61,7 +61,7 @@ class BinaryFile {
   std::size_t header_bytes_ = 0;
 };
 
-/// What a whole read of a file gave.
+/// The result of reading a whole file.
 struct ReadFile {
   MeshFileInfo info;
   Mesh mesh;
@@ -82,8 +82,8 @@ inline ReadFile read_bytes(std::string_view bytes) {
   return read_path(folder / "m.ply");
 }
 
-/// The message that a read of the bytes is refused with, from behind the folder's name on; empty if
-/// they are read.
+/// The message with which reading the bytes is refused, without the folder's name; empty if they
+/// are read.
 inline std::string refusal(std::string_view bytes, const TempFolder& folder) {
   write_file(folder / "m.ply", bytes);
   try {
@@ -102,7 +102,7 @@ inline std::string refusal(std::string_view bytes) {
   return refusal(bytes, TempFolder());
 }
 
-/// No warnings while it lives.
+/// Suppresses warnings during its lifetime.
 struct Quiet {
   Quiet() { set_log("", LogLevel::off); }
   ~Quiet() { set_log("", LogLevel::info); }

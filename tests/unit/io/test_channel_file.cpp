@@ -86,7 +86,7 @@ TEST_CASE("channels come back as they were staged, in blocks") {
   CHECK(back.points == mesh.positions);
   REQUIRE(back.values.size() == 2 * mesh.positions.size());
   CHECK(back.values[2 * 200] == 200);
-  CHECK(back.values[2 * 300] == 255);  // as much as the type can hold
+  CHECK(back.values[2 * 300] == 255);  // the type's maximum
   CHECK(back.values[2 * 300 + 1] == static_cast<float>(mesh.positions[300].z));
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("a file of channels that is damaged, or another one, is refused") {
   };
   CHECK(read(bytes).points.size() == 6);
   test::check_refuses_damage(bytes, read);
-  // Sound blocks of what the manifest does not tell.
+  // Valid blocks that differ from what the manifest says.
   CHECK_THROWS_AS(read_all(bytes, staged, PositionType::float64), DataError);
   StagedChannels other = staged;
   other.points = 5;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The colours of vertices in the formats that have a place for them.
+// Vertex colours, in the formats that support them.
 #include <doctest/doctest.h>
 
 #include <meshfarm/io/convert_mesh.hpp>
@@ -88,7 +88,7 @@ TEST_CASE("of other channels OBJ and OFF keep the colour only") {
   write_mesh(folder / "m.off", tetrahedron(), PositionType::float32, channels, values);
   CHECK(read_file(folder / "m.off")
             .starts_with("COFF\n4 4 0\n0 0 0 255 0 51 255\n1 0 0 0 255 0 255\n"));
-  // Two components are no colour.
+  // Two components do not make a colour.
   channels.pop_back();
   CHECK(kept_channels(folder / "m.obj", channels).empty());
 }

@@ -87,7 +87,7 @@ TEST_CASE("a mesh may be converted over itself, and a failed one leaves it as it
 }
 
 TEST_CASE("texture coordinates and pictures come with the triangles that stay") {
-  const Quiet quiet;  // these pictures are none for glTF
+  const Quiet quiet;  // glTF does not support these pictures
   const TempFolder folder;
   Mesh mesh = textured_square();
   mesh.positions.push_back(k_no_position);

@@ -17,7 +17,7 @@ using namespace meshfarm::test;
 
 namespace {
 
-/// A file that was written, and what is read of it.
+/// A written file, and what is read back from it.
 struct Written {
   std::string bytes;
   Mesh mesh;
@@ -39,14 +39,14 @@ Written written(const Mesh& mesh, PositionType positions, Packing packing = Pack
   return made;
 }
 
-/// The codec turns triangles round.
+/// The codec may rotate a triangle's corners.
 std::vector<Triangle> from_least(std::vector<Triangle> triangles) {
   for (Triangle& t : triangles)
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
   return triangles;
 }
 
-/// The largest difference of a coordinate.
+/// The largest change of a coordinate.
 double greatest_move(const Mesh& a, const Mesh& b) {
   REQUIRE(a.positions.size() == b.positions.size());
   double greatest = 0;
@@ -57,7 +57,7 @@ double greatest_move(const Mesh& a, const Mesh& b) {
   return greatest;
 }
 
-/// Of a radius of 0.1.
+/// A sphere of radius 0.1.
 Mesh sphere(Vec3 centre, PositionType type) {
   Mesh mesh = icosphere(4);
   for (Vec3& p : mesh.positions) p = rounded(p * 0.1 + centre, type);
@@ -82,7 +82,7 @@ TEST_CASE("whole numbers come back from a compressed GLB as they were") {
 }
 
 TEST_CASE("positions of a compressed GLB are half a step away at most") {
-  const double step = std::ldexp(1.0, -18);  // of an extent of 0.2
+  const double step = std::ldexp(1.0, -18);  // for an extent of 0.2
   for (const PositionType type : {PositionType::float32, PositionType::float64}) {
     for (const Vec3 centre : {Vec3{}, Vec3{-3, 7, 0.01}, Vec3{1000.3, -2000, 77}}) {
       const Mesh mesh = sphere(centre, type);
@@ -91,7 +91,7 @@ TEST_CASE("positions of a compressed GLB are half a step away at most") {
       const double move = greatest_move(made.mesh, mesh);
       CHECK(move <= step / 2 * 1.0001);
       CHECK(from_least(made.mesh.triangles) == from_least(mesh.triangles));
-      // What is on the lattice stays there.
+      // Positions on the lattice stay there.
       CHECK(greatest_move(written(made.mesh, PositionType::float64).mesh, made.mesh) == 0);
     }
   }
@@ -118,7 +118,7 @@ TEST_CASE("where the lattice is coarse beside the triangles positions are floats
     CHECK(made.has(R"("extensionsRequired":["EXT_meshopt_compression"])"));
     CHECK(made.has(R"("filter":"EXPONENTIAL")"));
     CHECK(greatest_move(made.mesh, mesh) > 0);
-    CHECK(greatest_move(made.mesh, mesh) < 0.006 / 10);  // the least height is 0.006
+    CHECK(greatest_move(made.mesh, mesh) < 0.006 / 10);  // the smallest height is 0.006
     CHECK(from_least(made.mesh.triangles) == from_least(mesh.triangles));
     CHECK(greatest_move(written(made.mesh, PositionType::float64).mesh, made.mesh) == 0);
   }
@@ -131,7 +131,7 @@ TEST_CASE("where the lattice is coarse beside the triangles positions are floats
 }
 
 TEST_CASE("no triangle loses its area or turns over on the lattice of a compressed GLB") {
-  const double step = std::ldexp(1.0, -10);  // of an extent of 40
+  const double step = std::ldexp(1.0, -10);  // for an extent of 40
   const auto with_last = [](const Triangle& triangle, double width, double height) {
     Mesh mesh = grid(40, 30);
     append(mesh, Mesh{{{0, 0, 0}, {width, 0, 0}, {0, height, 0}}, {triangle}});
@@ -143,7 +143,7 @@ TEST_CASE("no triangle loses its area or turns over on the lattice of a compress
   const Written made = written(low, PositionType::float32);
   CHECK(made.has(R"("filter":"EXPONENTIAL")"));
   CHECK(made.mesh.positions.back().y > 0);
-  // One without an area has none to lose.
+  // A triangle without area has none to lose.
   CHECK(written(with_last({0, 1, 1}, 1, step / 3), PositionType::float32).has(k_quantised));
 }
 

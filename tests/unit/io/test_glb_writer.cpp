@@ -26,11 +26,11 @@ std::uint32_t word_at(const std::string& bytes, std::size_t at) {
 }
 
 struct Glb {
-  std::string json;  // without the blanks at its end
+  std::string json;  // without the blanks at the end
   std::string binary;
 };
 
-/// The chunks, of which the lengths are checked.
+/// The chunks; checks their lengths.
 Glb chunks_of(const std::string& bytes) {
   REQUIRE(bytes.starts_with("glTF"));
   CHECK(word_at(bytes, 4) == 2);
@@ -299,7 +299,7 @@ TEST_CASE("more than 4 GiB are refused before anything is written") {
                            .c_str(),
                        UsageError);
   CHECK_THROWS_AS(create(1ULL << 62, 1), UsageError);
-  // Before there is anything to write.
+  // The check before anything is written.
   CHECK_THROWS_AS(check_fits(folder / "m.glb", {.vertices = 1, .triangles = 715'827'850}),
                   UsageError);
   for (const char* name : {"m.glb", "m.GLB"}) {

@@ -81,7 +81,7 @@ TEST_CASE("many buffers beside a glTF are read with few files open") {
   for (int i = 0; i < k_squares; ++i) {
     const std::string each = std::to_string(i);
     std::string bytes = k_square_binary;
-    bytes[4 * 3 * 4 - 4] = static_cast<char>(i);  // the last z, in its lowest bits
+    bytes[4 * 3 * 4 - 4] = static_cast<char>(i);  // the lowest bits of the last z
     write_file(folder / (each + ".bin"), bytes);
     const std::string comma = i > 0 ? "," : "";
     nodes += comma + "{\"mesh\":" + each + "}";
@@ -113,7 +113,7 @@ TEST_CASE("many buffers beside a glTF are read with few files open") {
     CHECK(mesh.positions[4 * i + 3].z == 0.5 + static_cast<double>(i) * std::ldexp(1, -24));
   }
   CHECK(mesh.triangles.back() == Triangle{4 * k_squares - 2, 4 * k_squares - 3, 4 * k_squares - 1});
-  // Read again, those that are not open are opened again.
+  // On a second read, buffers that are no longer open are reopened.
   write_file(folder / "1.bin", k_square_binary + "more");
   CHECK_THROWS_WITH_AS(read_mesh(*source), doctest::Contains("1.bin: changed while it was read"),
                        DataError);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Documents of glTF that say what cannot be: one line with the place.
+// glTF documents with impossible content: one line that names the place.
 #include <doctest/doctest.h>
 
 #include "gltf_test_files.hpp"
@@ -11,7 +11,7 @@ using namespace meshfarm::test;
 
 namespace {
 
-/// What a square is refused with if `from` stands as `to` in its JSON.
+/// The refusal of a square in whose JSON `from` is replaced by `to`.
 std::string refused_glb(std::string_view from, std::string_view to) {
   return refusal(glb_file(with(k_square_json, from, to), k_square_binary));
 }

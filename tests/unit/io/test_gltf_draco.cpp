@@ -15,7 +15,7 @@ using namespace meshfarm::test;
 
 namespace {
 
-/// The square of k_square_vertices: in the binary chunk only `packed`.
+/// The square of k_square_vertices, with only `packed` in the binary chunk.
 std::string draco_glb(const std::string& packed, std::size_t points, std::size_t corners = 6) {
   const std::string json =
       R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"],)"
@@ -46,7 +46,7 @@ struct Packed {
   std::size_t points = 0;
 };
 
-/// The square, each vertex at (x, y) of the picture, and of a red that is its number.
+/// The square; each vertex is at (x, y) of the picture, and its red is its number.
 Packed packed_square(draco::MeshEncoderMethod method) {
   draco::TriangleSoupMeshBuilder builder;
   builder.Start(2);
@@ -117,7 +117,7 @@ TEST_CASE("a GLB that Draco compressed is read, whatever the method") {
       for (std::size_t i = 0; i < batch.points.size(); ++i, ++seen) {
         const auto at =
             std::find(k_square_vertices.begin(), k_square_vertices.end(), batch.points[i]);
-        // Linear levels become those of sRGB.
+        // Linear levels are converted to sRGB.
         CHECK((batch.values[4 * i] > 1) == (at != k_square_vertices.begin()));
         CHECK(batch.values[4 * i + 3] == 255);
       }

@@ -15,7 +15,7 @@ namespace {
 
 using MaterialLabels = std::vector<Label>;
 
-/// A square whose two triangles have primitives of their own, with so much more in them.
+/// A square whose two triangles are separate primitives, with `first` and `second` added to them.
 std::string two_primitives(const std::string& first, const std::string& second,
                            const std::string& materials) {
   const std::string primitive = R"({"attributes":{"POSITION":0},"indices":)";

@@ -15,7 +15,7 @@ using namespace meshfarm::test;
 
 namespace {
 
-/// A mesh whose buffer views are compressed; their buffer, which is no more than a size, is 1.
+/// A mesh with compressed buffer views; their buffer, number 1, has a size but no bytes.
 struct Compressed {
   std::string json;
   std::string binary;
@@ -23,14 +23,14 @@ struct Compressed {
   std::string glb() const { return glb_file(json, binary); }
 };
 
-/// Rows of a buffer view, as they were compressed.
+/// The rows of a buffer view, compressed.
 struct PackedRows {
   std::string mode = "ATTRIBUTES";
   std::string filter;
   std::size_t rows = 0;
   std::size_t stride = 0;
   std::string bytes;
-  std::string accessor;  // but for the view and the count
+  std::string accessor;  // without the view and the count
   std::string more_of_view;
 };
 
@@ -87,7 +87,7 @@ std::string view_of(const PackedRows& packed, std::size_t start) {
          filter + R"(,"count":)" + number(packed.rows) + "}}}";
 }
 
-/// A mesh of one primitive, of which `primitive` tells the accessors.
+/// A mesh of one primitive; `primitive` names its accessors.
 Compressed compressed(const std::vector<PackedRows>& all,
                       std::string_view primitive = R"("attributes":{"POSITION":0},"indices":1)") {
   Compressed made;
@@ -128,7 +128,7 @@ Mesh ball(int level) {
   return mesh;
 }
 
-/// What the vertices' channels are, one vertex after the other.
+/// The values of all channels, vertex by vertex.
 std::vector<float> channels_of(const Compressed& made) {
   const TempFolder folder;
   write_file(folder / "m.glb", made.glb());
@@ -139,7 +139,7 @@ std::vector<float> channels_of(const Compressed& made) {
   return values;
 }
 
-/// Bytes that were allocated and not freed.
+/// Bytes allocated and not freed.
 std::size_t held_bytes() {
   const struct mallinfo2 info = ::mallinfo2();
   return info.uordblks + info.hblkhd;
@@ -168,7 +168,7 @@ TEST_CASE("compressed triangles are read, with indices of 16 and of 32 bits") {
       const ReadFile read = read_bytes(made.glb());
       CHECK((read.mesh.positions == mesh.positions));
       REQUIRE(read.mesh.triangles.size() == mesh.triangles.size());
-      bool are_same = true;  // TRIANGLES may turn them
+      bool are_same = true;  // TRIANGLES may rotate their corners
       for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         are_same &= turned(read.mesh.triangles[t]) == turned(mesh.triangles[t]);
       }
@@ -222,7 +222,7 @@ TEST_CASE("normals that were filtered as octahedra are read, of 8 and of 16 bits
 }
 
 TEST_CASE("rows that were filtered as quaternions are read") {
-  // No vertex has one, but its first three components may be taken for a position.
+  // No vertex has quaternions, but the first three components can serve as a position.
   const Mesh mesh = ball(3);
   const std::size_t count = mesh.positions.size();
   std::vector<float> turns;
@@ -297,7 +297,7 @@ TEST_CASE("a compressed buffer view that is malformed is refused") {
   const Compressed made = compressed(icosphere(2));  // 162 vertices, 320 triangles
   const auto refused = [&](std::string_view from, std::string_view to) {
     std::string json = with(made.json, from, to);
-    const std::size_t count = to.find("\"count\":");  // of which the view has as much
+    const std::size_t count = to.find("\"count\":");  // the view must have the same count
     if (count != std::string_view::npos) {
       const auto rows = std::stoull(std::string(to.substr(count + 8)));
       json = with(json, "1944", std::to_string(12 * rows));

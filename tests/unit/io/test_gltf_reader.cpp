@@ -12,14 +12,14 @@ using namespace meshfarm::test;
 
 namespace {
 
-/// The JSON of a square with other accessors and views, each one's own text.
+/// The JSON of a square with other accessors and views, each given as text.
 std::string square_with(std::string_view accessors, std::string_view views, std::size_t bytes) {
   const std::string head = k_square_json.substr(0, k_square_json.find("\"accessors\""));
   return head + "\"accessors\":[" + std::string(accessors) + "],\"bufferViews\":[" +
          std::string(views) + "],\"buffers\":[{\"byteLength\":" + std::to_string(bytes) + "}]}";
 }
 
-/// The values of all channels, as they come.
+/// The values of all channels, in the order of the scan.
 std::vector<float> values_of(const std::string& glb) {
   const TempFolder folder;
   write_file(folder / "m.glb", glb);
@@ -112,7 +112,7 @@ TEST_CASE("strips and fans become triangles, the way round that they have") {
   CHECK(read_glb(strip).mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}});
   const std::string fan = with(k_square_json, "\"indices\":1", "\"mode\":6");
   CHECK(read_glb(fan).mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
-  // 0 1 2 2 1 3: two equal corners join strips, and are no triangle.
+  // In 0 1 2 2 1 3, triangles with two equal corners only join strips, and are left out.
   const std::string joined = with(k_square_json, "\"indices\":1", "\"indices\":1,\"mode\":5");
   CHECK(read_glb(joined).mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {1, 2, 3}});
 }
@@ -163,7 +163,7 @@ TEST_CASE("linear colours become those of sRGB, and what has none is white") {
   std::string json = with(square_with(accessors, views, 60), k_primitive,
                           R"({"attributes":{"POSITION":0,"COLOR_0":1}})");
   const std::string bytes = raw<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) +
-                            raw<std::uint16_t>({65535, 0, 14146, 65535,  // 14146: 128 of sRGB
+                            raw<std::uint16_t>({65535, 0, 14146, 65535,  // 14146 is 128 in sRGB
                                                 0, 65535, 0, 0,          //
                                                 0, 0, 65535, 13107});
   const std::vector<float> values = values_of(glb_file(json, bytes));
@@ -241,7 +241,7 @@ TEST_CASE("normals are turned with their nodes, and dropped where not all vertic
   const std::string bytes = raw<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) +
                             raw<std::int8_t>({0, 0, 127, 0, 127, 0, 0, 0, 0, -127, 0, 0});
   CHECK(values_of(glb_file(json, bytes)) == std::vector<float>{0, 0, 1, 1, 0, 0, 0, -1, 0});
-  // Stretched, a normal keeps its length; mirrored, it goes with the surface.
+  // Under stretching a normal keeps its length; under mirroring it follows the surface.
   const std::string mirrored =
       with(json, "\"mesh\":0", R"("mesh":0,"scale":[-2,1,1],"translation":[5,0,0])");
   CHECK(values_of(glb_file(mirrored, bytes)) == std::vector<float>{0, 0, 1, -1, 0, 0, 0, -1, 0});

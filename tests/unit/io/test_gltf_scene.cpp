@@ -11,7 +11,7 @@ using namespace meshfarm::test;
 
 namespace {
 
-/// A square whose scene has these nodes, of which 0 is the root.
+/// A square whose scene has these nodes; node 0 is the root.
 ReadFile read_nodes(std::string_view nodes) {
   return read_glb(
       with(k_square_json, "\"nodes\":[{\"mesh\":0}]", "\"nodes\":[" + std::string(nodes) + "]"));
@@ -28,7 +28,7 @@ TEST_CASE("a node's transform moves its mesh, as doubles") {
   CHECK(second(R"({"mesh":0,"translation":[412345.678,1,-2]})") == Vec3{412346.678, 1, -2});
   CHECK(second(R"({"mesh":0,"scale":[3,1,1]})") == Vec3{3, 0, 0});
   CHECK(second(R"({"mesh":0,"matrix":[0,1,0,0, -1,0,0,0, 0,0,1,0, 5,6,7,1]})") == Vec3{5, 7, 7});
-  // A quarter about z, of a mesh that is stretched before and moved after.
+  // A quarter turn about z of a mesh that is stretched before it and moved after it.
   const Vec3 p = second(R"({"mesh":0,"rotation":[0,0,0.7071067811865476,0.7071067811865476],)"
                         R"("scale":[2,1,1],"translation":[10,0,0]})");
   CHECK(std::abs(p.x - 10) < 1e-12);
@@ -115,7 +115,7 @@ TEST_CASE("nodes that are no tree are refused") {
         "m.ply: nodes[0] is reached twice: the nodes are not a tree");
   CHECK(refused(R"({"children":[1,1]},{"mesh":0})") ==
         "m.ply: nodes[1] is reached twice: the nodes are not a tree");
-  // No further child is looked at, nor kept for later.
+  // No further child is looked at or queued.
   CHECK(refused(R"({"children":[1,1,7]},{"mesh":0})") ==
         "m.ply: nodes[1] is reached twice: the nodes are not a tree");
   CHECK(refused(R"({"children":[7]})") == "m.ply: nodes[0].children[0] is node 7 of 1");

@@ -14,12 +14,12 @@ constexpr std::uint32_t k_glb_side = 33;  // vertices
 constexpr Texel k_glb_red{255, 0, 0};
 constexpr Texel k_glb_green{0, 255, 0};
 
-/// A flat grid from 0 to 1, with its positions as texture coordinates. The rest is the test's.
+/// A flat grid from 0 to 1, with its positions as texture coordinates. The test sets the rest.
 struct TexturedGrid {
   std::string material = R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})";
   std::string textures = R"({"source":0})";
   std::string samplers = "{}";
-  std::string image;  // of the buffer's last view
+  std::string image;  // the content of the buffer's last view
   std::string images = R"({"bufferView":3,"mimeType":"image/png"})";
   std::string primitive = R"("material":0)";
   std::string attributes = R"("TEXCOORD_0":1)";
@@ -71,7 +71,7 @@ GlbColours grid_colours(const TexturedGrid& grid) {
   return test::colours_of(folder / "m.glb");
 }
 
-/// A vertex by its place, from 0 to 1.
+/// A vertex by its position, from 0 to 1.
 const std::array<float, 3>& at(const GlbColours& colours, double u, double v) {
   const auto index = [](double x) {
     return static_cast<std::size_t>(std::lround(x * (k_glb_side - 1)));
@@ -79,7 +79,7 @@ const std::array<float, 3>& at(const GlbColours& colours, double u, double v) {
   return colours[index(v) * k_glb_side + index(u)];
 }
 
-/// Away from the border, where shares lie on one side.
+/// Skips the border, where a vertex's share of the surface lies on one side only.
 void check_glb_gradient(const GlbColours& colours, double tolerance) {
   for (std::size_t y = 1; y + 1 < k_glb_side; ++y) {
     for (std::size_t x = 1; x + 1 < k_glb_side; ++x) {
@@ -109,7 +109,7 @@ TEST_CASE("vertices have the colours of a GLB's texture, which starts at the top
   grid.image = jpeg_of(gradient(256));
   grid.images = R"({"bufferView":3,"mimeType":"image/jpeg"})";
   check_glb_gradient(grid_colours(grid), 4);
-  // As many texels as vertices, and fewer.
+  // About as many texels as vertices: slightly fewer.
   grid.image = png_of(gradient(32));
   check_glb_gradient(grid_colours(grid), 6);
 }
@@ -174,7 +174,7 @@ TEST_CASE("textures are wrapped and transformed") {
   grid.samplers = R"({"wrapS":33071})";
   colours = grid_colours(grid);
   CHECK(is_about(at(colours, 0.875, 0.5), k_glb_green));
-  // A quarter of a turn: what was at the left is below, v' = 1 - u, and u' = v.
+  // A quarter turn: the left side becomes the lower one, v' = 1 - u, and u' = v.
   grid.material = with_transform(R"("offset":[0,1],"rotation":1.5707963267948966)");
   colours = grid_colours(grid);
   CHECK(is_about(at(colours, 0.5, 0.25), k_glb_red));

@@ -26,7 +26,7 @@ struct TexturedSquare {
   std::string images = R"({"uri":"maps/one.png"},{"uri":"two.png"})";
   std::string more_primitives;
   std::string nodes = R"({"mesh":0})";
-  std::string tail;  // of the binary chunk
+  std::string tail;  // the end of the binary chunk
 
   std::string glb() const {
     const std::string binary = k_square_binary + places + tail;
@@ -52,7 +52,7 @@ struct TexturedSquare {
   }
 };
 
-/// With its pictures beside it.
+/// The square with its pictures beside it.
 struct SquareModel : UvModel {
   explicit SquareModel(const TexturedSquare& square) : UvModel("m.glb", square.glb()) {
     with("maps/one.png", png_of(gradient(4))).with("two.png", png_of(gradient(5)));
@@ -123,7 +123,7 @@ TEST_CASE("a GLB's maps are kept with their uses if they lie as its colours do")
                                  {MapUse::normal, 1},
                                  {MapUse::emission, 0}});
   CHECK(source->info().skipped == Names{"occlusionTexture (1)"});
-  // Without a factor nothing shines; the normals' set is the first that there is then.
+  // Without a factor there is no emission; the first set in use is then that of the normals.
   square.materials = R"({"name":"skin","normalTexture":{"index":1,"texCoord":1},)"
                      R"("emissiveTexture":{"index":0}})";
   square.attributes = R"("TEXCOORD_1":2)";

@@ -16,7 +16,7 @@ LabelMeaning named(const std::vector<std::string>& names) {
   return meaning;
 }
 
-/// Which of A's triangles have the label that B's triangle in the same place has.
+/// Which triangles of A have the same label as B's triangle in the same place.
 std::vector<bool> same(const LabelMeaning& meaning_a, std::vector<Label> labels_a,
                        const LabelMeaning& meaning_b, std::vector<Label> labels_b) {
   MeantLabels a{meaning_a, std::move(labels_a)};

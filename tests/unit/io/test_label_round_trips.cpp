@@ -21,7 +21,7 @@ Converted convert_labels(const std::filesystem::path& from, const std::filesyste
   return convert_mesh(*source, to, [](double) {});
 }
 
-/// The label of each triangle, whatever their order.
+/// The label of each triangle, independent of the triangles' order.
 std::map<Triangle, Label> labelled(const Mesh& mesh) {
   REQUIRE(mesh.columns.labels.size() == mesh.triangles.size());
   std::map<Triangle, Label> made;
@@ -30,7 +30,7 @@ std::map<Triangle, Label> labelled(const Mesh& mesh) {
   return made;
 }
 
-/// Bands that go round, in no order of their labels.
+/// Bands around the torus, not in the order of their labels.
 Mesh banded() {
   Mesh mesh = torus(40, 60);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

@@ -14,7 +14,7 @@ using namespace meshfarm;
 
 namespace {
 
-/// Four by four grey levels; each is its place from 0 to 15, times 16, row by row from the top.
+/// Four by four grey levels: 16 times the texel's index (0 to 15), row by row from the top.
 std::string grey_steps() {
   std::vector<std::uint8_t> texels;
   for (int i = 0; i < 16; ++i) texels.insert(texels.end(), 3, static_cast<std::uint8_t>(16 * i));

@@ -20,7 +20,7 @@ std::string torus_bytes() {
   return read_file(folder / "torus.ply");
 }
 
-/// A zstd frame by hand: no content size, one raw block, no checksum.
+/// A handmade zstd frame: no content size, one raw block, no checksum.
 std::string raw_zstd(std::string_view content) {
   std::string frame("\x28\xb5\x2f\xfd\x00\x58", 6);
   const std::size_t block = content.size() << 3 | 1;
@@ -100,7 +100,7 @@ TEST_CASE("corrupt compressed data is refused or does no harm") {
 }
 
 TEST_CASE("the checksum of a zstd frame counts") {
-  // What the command `zstd` makes of an ascii PLY with the vertex 1 2 3.
+  // The output of the command `zstd` for an ascii PLY with the vertex 1 2 3.
   constexpr unsigned char k_frame[] = {
       0x28, 0xb5, 0x2f, 0xfd, 0x24, 0x67, 0x5d, 0x02, 0x00, 0x92, 0x04, 0x10, 0x16, 0x90, 0xb5,
       0x3a, 0x04, 0x02, 0x49, 0xc6, 0x76, 0xbb, 0xb9, 0x65, 0x93, 0xfd, 0xff, 0x9b, 0xf6, 0xaf,
@@ -225,7 +225,7 @@ TEST_CASE("an exception of the taker ends the scan and leaves the source usable"
 }
 
 TEST_CASE("vertices of a plain binary file are jumped over") {
-  // Positions are only looked at by who asks for them: these are none.
+  // Positions are only checked when they are asked for: these are invalid.
   BinaryFile file(BinaryFile::Order::little, mesh_elements(4, 1));
   file.put<std::uint32_t>(std::initializer_list<std::uint32_t>{~0U, ~0U, ~0U, ~0U, ~0U, ~0U, ~0U,
                                                                ~0U, ~0U, ~0U, ~0U, ~0U});

@@ -58,7 +58,7 @@ TEST_CASE("names are those that faces use, in the order of their use") {
   first.face();
   first.set("a");
   ObjNames second;
-  second.face();  // of a
+  second.face();  // still in a
   second.set("c");
   ObjNames third;
   third.set("b");

@@ -28,7 +28,7 @@ Mesh read_by(unsigned threads, std::string_view bytes) {
   return read_mesh(*open_mesh(folder / "m", {.threads = threads}));
 }
 
-/// Enough for many pieces: a grid, whose rows are made of relative indices if that is asked for.
+/// A grid, large enough for many pieces, whose rows use relative indices if `relative`.
 std::string large_obj(bool relative) {
   constexpr int k_columns = 100;
   constexpr int k_rows = 1000;
@@ -95,7 +95,7 @@ TEST_CASE("polygons of an OBJ are cut into triangles inside them") {
   CHECK(triangles_of("f 1 2 4 3\n") == std::vector<Triangle>{{0, 1, 3}, {0, 3, 2}});
   CHECK(triangles_of("f 1 2 3\nf 1 2 4 3\nf 3 2 4\n") ==
         std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}, {0, 3, 2}, {2, 1, 3}});
-  // An arrowhead: the fan from the first corner would leave it.
+  // An arrowhead: a fan from its first corner would leave it.
   const ReadFile read = read_bytes("v 0 0 0\nv 2 1 0\nv 0 2 0\nv 0.5 1 0\nf 1 2 3 4\n");
   CHECK(read.mesh.triangles.size() == 2);
   for (const Triangle& t : read.mesh.triangles) {

@@ -13,7 +13,7 @@ namespace {
 constexpr Texel k_obj_red{255, 0, 0};
 constexpr Texel k_obj_green{0, 255, 0};
 constexpr Texel k_obj_blue{0, 0, 255};
-constexpr int k_side = 33;  // vertices of a grid
+constexpr int k_side = 33;  // vertices along a side of a grid
 
 using Colours = std::vector<std::array<float, 3>>;
 
@@ -22,13 +22,13 @@ bool is(const std::array<float, 3>& colour, const Texel& wanted) {
          std::abs(colour[2] - wanted[2]) < 0.5F;
 }
 
-/// Left red, right green.
+/// Left half red, right half green.
 Picture halves() {
   return picture_of(
       64, 64, [](std::uint32_t x, std::uint32_t) { return x < 32 ? k_obj_red : k_obj_green; });
 }
 
-/// The upper half red, the lower green.
+/// Upper half red, lower half green.
 Picture layers() {
   return picture_of(
       64, 64, [](std::uint32_t, std::uint32_t y) { return y < 32 ? k_obj_red : k_obj_green; });
@@ -36,7 +36,7 @@ Picture layers() {
 
 enum class Indices { absolute, relative };
 
-/// A grid from 0 to 1, its positions as texture coordinates.
+/// A grid from 0 to 1, with its positions as texture coordinates.
 std::string grid_obj(Indices indices = Indices::absolute) {
   std::string text = "mtllib m.mtl\nusemtl skin\n";
   for (int y = 0; y < k_side; ++y) {
@@ -56,7 +56,7 @@ std::string grid_obj(Indices indices = Indices::absolute) {
   return text;
 }
 
-/// A square of two triangles with what the test says of it.
+/// A square of two triangles; the test adds the rest.
 constexpr std::string_view k_textured_square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 constexpr std::string_view k_textured_places = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
@@ -113,7 +113,7 @@ TEST_CASE("neither threads nor relative indices change an OBJ's colours") {
 }
 
 TEST_CASE("a vertex on a seam has the mean of its charts, and nothing from between them") {
-  // Two triangles apart in the atlas, red and blue; what is between them is green.
+  // Two separate triangles in the atlas, red and blue, with green between them.
   const Picture atlas = picture_of(64, 64, [](std::uint32_t x, std::uint32_t) {
     return x < 16 ? k_obj_red : x < 48 ? k_obj_green : k_obj_blue;
   });
@@ -140,7 +140,7 @@ TEST_CASE("faces have the material that was used last, of any library") {
   const Colours colours = model.colours();
   REQUIRE(colours.size() == 10);
   CHECK(is(colours[1], k_obj_red));
-  CHECK(is(colours[3], {255, 255, 255}));  // of no face
+  CHECK(is(colours[3], {255, 255, 255}));  // in no face
   CHECK(is(colours[5], k_obj_blue));
   CHECK(is(colours[9], {255, 255, 255}));
 }

@@ -212,7 +212,7 @@ TEST_CASE("a manifest of slabs tells how they are to be sorted, and of nothing e
   Manifest m = sample_manifest();
   m.scheme = Scheme::stream;
   m.sorting = Sorting{{{2, 0, 1}, -1}, Weld::off};
-  CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);  // of parts
+  CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);  // these are parts
   for (std::size_t i = 0; i < 2; ++i) m.parts[i].file.name = to_string(SlabName{7});
   const Manifest back = decode_manifest(encode_manifest(m), "manifest");
   REQUIRE(back.sorting.has_value());
@@ -241,7 +241,7 @@ TEST_CASE("a manifest of what a run is to cut has that alone, and no parts") {
   Manifest m = sample_manifest();
   m.cutting = Cutting{"/data/lucy.ply", 190, -7, 28, 5, 9};
   m.boundary = {};
-  CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);  // parts
+  CHECK_THROWS_AS(decode_manifest(encode_manifest(m), "manifest"), DataError);  // it has parts
   m.parts.clear();
   const Manifest back = decode_manifest(encode_manifest(m), "manifest");
   CHECK(back.cutting == m.cutting);

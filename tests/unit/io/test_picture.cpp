@@ -26,7 +26,7 @@ void check_gradient(const Picture& read, int tolerance) {
   }
 }
 
-/// What is told of it.
+/// The message with which the picture is refused; empty if it is decoded.
 std::string picture_refusal(const std::string& bytes) {
   try {
     decode_picture(bytes);
@@ -36,7 +36,7 @@ std::string picture_refusal(const std::string& bytes) {
   return "";
 }
 
-/// A PNG's first chunk with another size.
+/// A PNG whose first chunk claims this size.
 std::string resized_png(std::uint32_t width, std::uint32_t height) {
   std::string bytes = png_of(gradient(64));
   for (int i = 0; i < 4; ++i) {

@@ -13,7 +13,7 @@ using namespace meshfarm::test;
 
 namespace {
 
-/// The largest difference of a level.
+/// The largest difference between levels.
 int difference(const Picture& a, const Picture& b) {
   REQUIRE(a.width == b.width);
   REQUIRE(a.height == b.height);
@@ -29,7 +29,7 @@ int difference(const Picture& a, const Picture& b) {
   return most;
 }
 
-/// Nothing that could be compressed.
+/// Noise, which does not compress.
 Picture noise(std::uint32_t width, std::uint32_t height) {
   std::uint32_t state = 1;
   return picture_of(width, height, [&state](std::uint32_t, std::uint32_t) {

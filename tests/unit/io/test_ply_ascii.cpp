@@ -23,7 +23,7 @@ std::vector<Triangle> ply_triangles(std::string_view faces) {
   return read_bytes(ascii_square(faces)).mesh.triangles;
 }
 
-/// What so many threads make of a file: positions, triangles, and warnings or an error.
+/// The outcome of reading a file with some number of threads: mesh and warnings, or an error.
 struct ByThreads {
   Mesh mesh;
   PositionType positions = PositionType::float32;
@@ -185,7 +185,7 @@ TEST_CASE("ascii floats with more digits than a float holds are doubles") {
   CHECK(read("0.123456789 0 0").info.positions == PositionType::float64);
   CHECK(read("1.23456789e-05 0 0").info.positions == PositionType::float64);
   CHECK(read("123456789 0 0").info.positions == PositionType::float64);
-  // What floats are printed as, in whatever way.
+  // Floats, printed in various ways.
   for (const auto numbers :
        {"0.1 0.100000001 0.10000000149011612", "-0.0312216 0.00514924 1e-7",
         "500123.4 500123.437500 5.0012344e+05", "3.141593 16777217e-3 1.17549435e-38",
@@ -230,11 +230,11 @@ TEST_CASE("records that are wrapped over lines are read, as long as they end wit
   std::string text = replaced(ascii_square(), "1 0 0\n", "1\n0\n\n0\n");
   check_square(read_bytes(text));
   check_square(read_bytes(replaced(text, "3 2 1 3\n", "3\n2 1\n3")));
-  // Elements that are passed over, too.
+  // The same for elements that are skipped.
   text = replaced(text, "element vertex",
                   "element tag 2\nproperty int a\nproperty int b\nelement vertex");
   check_square(read_bytes(replaced(text, "end_header\n", "end_header\n1\n2\n3 4\n")));
-  // A value that is missing is not made up for by the next line's.
+  // A missing value is not taken from the next line.
   CHECK(refusal(replaced(ascii_square(), "1 0 0\n", "1 0\n")) ==
         "m.ply: vertex 1 on line 11: the line ends before its last value");
   CHECK(refusal(ascii_square("3 0 1\n3 2 1 3\n")) ==
@@ -304,7 +304,7 @@ TEST_CASE("extra elements and properties stand anywhere") {
 }
 
 TEST_CASE("a long file is read through many windows, wherever they end") {
-  constexpr int k_count = 230'000;  // some more text than a window holds
+  constexpr int k_count = 230'000;  // slightly more text than a window holds
   Mesh mesh;
   std::string body;
   for (int i = 0; i < k_count; ++i) {
@@ -347,7 +347,7 @@ TEST_CASE("any number of threads reads the same, and tells the same line of what
       {41'000, "1\n2\n3", ""},             // wrapped
       {41'000, "1 2 3 4 5", ""},           // more than is declared
       {41'000, "1 nan 3", ""},             // no position
-      {41'000, "1.123456789012 2 3", ""},  // digits that no float holds
+      {41'000, "1.123456789012 2 3", ""},  // more digits than a float holds
       {100'000, "3 0 1\n2", ""},           // wrapped
       {100'000, "2 0 1", ""},              // no face
       {41'000, "1 2", at + "vertex 41000 on line 41010: the line ends before its last value"},
@@ -415,7 +415,7 @@ TEST_CASE("text is parsed once, however often its vertices are scanned and howev
 
   write_file(folder / "m.ply", bytes);
   const Quiet quiet;
-  ::setenv("TMPDIR", (folder / "none").c_str(), 1);  // no scratch: it is read again
+  ::setenv("TMPDIR", (folder / "none").c_str(), 1);  // without scratch space it is read again
   const auto without = open_mesh(folder / "m.ply");
   CHECK(count(*without) == k_count);
   CHECK(count(*without) == k_count);

@@ -13,7 +13,7 @@ namespace {
 
 using Order = BinaryFile::Order;
 
-/// The square with its faces' counts and indices in the types named.
+/// The square, with its faces' counts and indices in these types.
 template <class Count, class Index>
 BinaryFile square_of(Order order, std::string_view count, std::string_view index) {
   BinaryFile file(order, replaced(mesh_elements(4, 2), "uchar int",
@@ -155,7 +155,7 @@ TEST_CASE("binary strips restart at -1") {
 }
 
 TEST_CASE("concave polygons are cut inside, wherever their corners' positions are found") {
-  // Concave at its second corner: the fan from the first would go round outside.
+  // Concave at its second corner: a fan from the first would leave the polygon.
   const auto faces = [](BinaryFile& file) { file.bytes({4}).ints({0, 1, 2, 3}); };
   const std::vector<Triangle> inside{{1, 2, 3}, {0, 1, 3}};
   for (const Order order : {Order::little, Order::big}) {
@@ -212,7 +212,7 @@ TEST_CASE("a coordinate that is not finite costs the triangles that use it, no m
   CHECK_FALSE(has_position(first.positions[0]));
   CHECK(first.positions[1] == k_square_vertices[1]);
   CHECK(first.triangles == std::vector<Triangle>{k_square_triangles[1]});
-  CHECK(changed(16, infinity).triangles.empty());  // vertex 1 is in both
+  CHECK(changed(16, infinity).triangles.empty());  // both triangles use vertex 1
   CHECK(changed(44, -infinity).triangles == std::vector<Triangle>{k_square_triangles[0]});
 }
 

@@ -92,7 +92,7 @@ TEST_CASE("a PLY file has the values that it was given, in their types") {
   const std::string bytes = read_file(folder / "m.ply");
   CHECK(bytes.find("float z\nproperty uchar red\nproperty ushort depth\nproperty float heat\n") !=
         std::string::npos);
-  // `depth` is a whole number, and may be a label.
+  // `depth` is an integer, so it may be a label.
   const ReadChannels read = read_channels(bytes);
   CHECK(names(read.info.channels) == std::vector<std::string>{"red", "heat"});
   CHECK(read.all.points == mesh.positions);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// Whatever is done to a file, a read gives a mesh or throws an Error: no crash, no hang, no memory
-// for what a header merely claims.
+// Whatever is done to a file, reading it gives a mesh or throws an Error: no crash, no hang, and no
+// memory for what a header merely claims.
 #include <doctest/doctest.h>
 
 #include "ply_test_files.hpp"
@@ -14,7 +14,7 @@ namespace {
 
 using Order = BinaryFile::Order;
 
-/// A file with every kind of element and list, in `format`.
+/// A file with every kind of element and list, in this byte order.
 std::string rich_file(Order order) {
   BinaryFile file(order,
                   "comment made by hand\nelement pad 1\nproperty list uchar short bits\n"

@@ -14,13 +14,13 @@ namespace {
 
 using PlyLabels = std::vector<Label>;
 
-/// A square whose faces have these properties, and these records.
+/// A square whose faces have these properties and records.
 std::string ascii(std::string_view properties, std::string_view faces) {
   return "ply\nformat ascii 1.0\nelement vertex 4\n" + std::string(k_xyz) + "element face 2\n" +
          std::string(properties) + "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n" + std::string(faces);
 }
 
-/// The name of the labels of faces with these properties; empty if there are none.
+/// The name of the labels that faces with these properties have; empty if there are none.
 std::string name_with(std::string_view properties) {
   const std::string file = "ply\nformat ascii 1.0\nelement vertex 0\n" + std::string(k_xyz) +
                            "element face 1\n" + std::string(properties) + "end_header\n" +
@@ -115,7 +115,7 @@ TEST_CASE("binary labels come in either byte order, before and after the corners
       before.put<std::uint32_t>({label}).bytes({3}).ints({0, 1, 2});
     }
     CHECK(read_bytes(before.text()).mesh.columns.labels == PlyLabels{7, 0, UINT32_MAX, 7});
-    // With a list beside them records have no one size.
+    // With another list, records have no fixed size.
     BinaryFile listed =
         binary(order, with_corners("property list uchar uchar more\nproperty uchar label\n"));
     for (const std::uint8_t label : std::initializer_list<std::uint8_t>{1, 2, 3, 4}) {

@@ -16,7 +16,7 @@ constexpr std::string_view k_textures =
     "comment TextureFile one.png\ncomment TextureFile  my two.jpg \n";
 constexpr std::string_view k_list = "property list uchar float texcoord\n";
 
-/// Of a square: `properties` are those of the faces.
+/// The header of a square whose faces have these properties.
 std::string header(std::string_view faces, std::string_view properties,
                    std::string_view comments = k_textures) {
   return "ply\nformat ascii 1.0\n" + std::string(comments) + "element vertex 4\n" +
@@ -40,7 +40,7 @@ void check_two(const UvTriangles& read) {
   CHECK(read.uvs == k_two);
 }
 
-/// Left red, right green.
+/// Left half red, right half green.
 std::string ply_halves() {
   return png_of(picture_of(64, 64, [](std::uint32_t x, std::uint32_t) {
     return x < 32 ? Texel{255, 0, 0} : Texel{0, 255, 0};
@@ -71,7 +71,7 @@ TEST_CASE("faces of an ascii PLY have texture coordinates and pictures") {
 
 TEST_CASE("faces of a binary PLY have texture coordinates, in either order, compressed or not") {
   for (const auto order : {BinaryFile::Order::little, BinaryFile::Order::big}) {
-    // The list of double, before the corners; and a number below zero.
+    // A list of doubles before the corners, and a negative number.
     const std::string elements =
         std::string(k_textures) + "element vertex 4\n" + std::string(k_xyz) +
         "element face 2\nproperty list ushort double texcoord\nproperty char texnumber\n" +
@@ -202,7 +202,7 @@ TEST_CASE("what an ascii PLY gives does not depend on threads") {
 }
 
 TEST_CASE("a PLY's textures become the colours of vertices") {
-  // A strip of a row of squares, from left to right over the picture.
+  // A strip of squares that spans the picture from left to right.
   for (const bool has_colours : {false, true}) {
     std::string text = "ply\nformat ascii 1.0\ncomment TextureFile one.png\nelement vertex 18\n" +
                        std::string(k_xyz) +
@@ -220,7 +220,7 @@ TEST_CASE("a PLY's textures become the colours of vertices") {
       };
       const auto vertex = [](int at) { return " " + std::to_string(at); };
       text += "4" + vertex(2 * i) + vertex(2 * i + 2) + vertex(2 * i + 3) + vertex(2 * i + 1);
-      // The last has no texture.
+      // The last square has no texture.
       text += i == 7 ? " 0\n"
                      : " 8" + place(i, 0) + place(i + 1, 0) + place(i + 1, 1) + place(i, 1) + "\n";
     }

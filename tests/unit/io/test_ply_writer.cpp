@@ -84,7 +84,7 @@ TEST_CASE("batches of any size make the same file") {
 
 TEST_CASE("the index type follows the vertex count") {
   const TempFolder folder;
-  // Looks into the unfinished file: nobody wants to wait for 2^31 vertices.
+  // Looks into the unfinished file, to avoid writing 2^31 vertices.
   const auto index_type = [&folder](std::uint64_t vertices) {
     const auto writer = create_ply(folder / "m.ply", options_for(vertices, 0));
     writer->vertices(std::vector<Vec3>(200'000));

@@ -22,7 +22,7 @@ CutTriangles cut(const std::vector<Vec3>& corners) {
   return {found.begin(), found.end()};
 }
 
-/// Twice the area of the triangles that face the way of `up`; each must.
+/// Twice the area of the triangles, each of which must face in the direction `up`.
 double area_facing(const std::vector<Vec3>& corners, const CutTriangles& triangles, Vec3 up) {
   double area = 0;
   for (const auto& [a, b, c] : triangles) {

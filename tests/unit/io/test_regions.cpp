@@ -17,8 +17,7 @@ namespace {
 
 using Triangles = std::vector<BoundaryTriangle>;
 
-/// The halves of a region of `range` that hold both parts, one within the other: the last has the
-/// number.
+/// Halves `range` while one half holds both parts; returns the number of the last region.
 std::uint32_t lowest_region(PartRange range, std::uint32_t a, std::uint32_t b) {
   const std::uint32_t middle = range.first + (range.end - range.first) / 2;
   if (b < middle) return lowest_region({range.first, middle}, a, b);
@@ -26,7 +25,7 @@ std::uint32_t lowest_region(PartRange range, std::uint32_t a, std::uint32_t b) {
   return middle - 1;
 }
 
-/// A triangle between each pair of parts, and its parts as its label.
+/// A triangle between each pair of parts, labelled by the pair.
 Triangles all_pairs(std::uint32_t parts, std::vector<Label>& labels) {
   Triangles triangles;
   for (std::uint32_t a = 0; a < parts; ++a) {
@@ -169,7 +168,7 @@ TEST_CASE("a damaged region is refused, and the others are read") {
   const Stage stage = Stage::create(folder.path());
   const EncodedBoundary encoded = encode_boundary(4, triangles);
   std::string bytes = encoded.file;
-  bytes[bytes.size() - 12] ^= 1;  // before the checksum of the whole
+  bytes[bytes.size() - 12] ^= 1;  // just before the checksum of the whole file
   const FileRef file = stage.publish(BoundaryName{}, bytes);
   BoundaryRegions reader(stage, {{file, encoded.index, 0}}, 4);
   Triangles read;

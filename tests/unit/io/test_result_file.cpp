@@ -131,7 +131,7 @@ TEST_CASE("a result written piece by piece is the mesh that it would be in one")
   const std::span<const Vec3> vertices(mesh.positions);
   const std::span<const Triangle> triangles(mesh.triangles);
   some.add(vertices.subspan(2, 70'000), triangles.first(10));
-  some.add({}, triangles.subspan(10));  // of vertices that are still to come
+  some.add({}, triangles.subspan(10));  // they use vertices that are still to come
   some.add(vertices.subspan(70'002), {});
   some.end_rung(3, 100);
   some.finish(first_two(mesh), {});
@@ -205,7 +205,7 @@ TEST_CASE("a summary comes back; a damaged one is refused") {
     CHECK_THROWS_AS(decode_summary(bytes + "x", "s"), DataError);
   }
   std::string impossible = encode_summary({rungs, 7, 9, true});
-  impossible[16] = 2;  // held: after two counts
+  impossible[16] = 2;  // `held`, which follows two counts
   CHECK_THROWS_AS(decode_summary(impossible, "s"), DataError);
   impossible[16] = 1;
   impossible[17] = 3;  // why the ladder ends

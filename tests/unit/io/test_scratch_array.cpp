@@ -14,7 +14,7 @@ using test::TempFolder;
 
 namespace {
 
-/// $TMPDIR for as long as this lives.
+/// Sets $TMPDIR during its lifetime.
 class ScratchIn {
  public:
   explicit ScratchIn(const std::filesystem::path& folder) {
@@ -39,7 +39,7 @@ TEST_CASE("an array above its limit is in a scratch file, one below in memory") 
   const ScratchIn none(folder / "none");
   CHECK(ScratchArray<std::uint64_t>(8, 64).size() == 8);
   CHECK_THROWS_AS(ScratchArray<std::uint64_t>(9, 64), IoError);
-  // The limit that all have: untouched, the pages of neither take memory.
+  // The default limit; untouched pages take no memory in either case.
   constexpr std::uint64_t k_most_numbers = ScratchArray<std::uint64_t>::k_most_in_memory / 8;
   CHECK(ScratchArray<std::uint64_t>(k_most_numbers).size() == k_most_numbers);
   CHECK_THROWS_AS(ScratchArray<std::uint64_t>(k_most_numbers + 1), IoError);
@@ -50,7 +50,7 @@ TEST_CASE("an array in a scratch file keeps what is written when its pages are g
   const ScratchIn here(folder.path());
   constexpr std::uint64_t k_count = 100'000;
   ScratchArray<std::uint64_t> array(k_count, 1);
-  CHECK(std::filesystem::is_empty(folder.path()));  // it has no name
+  CHECK(std::filesystem::is_empty(folder.path()));  // the file has no name
   const auto is_zero = [](std::uint64_t item) { return item == 0; };
   CHECK(std::all_of(array.items().begin(), array.items().end(), is_zero));
   for (std::uint64_t i = 0; i < k_count; ++i) array.items()[i * 7919 % k_count] = i;

@@ -19,7 +19,7 @@ void put(std::string& bytes, T value) {
   bytes.append(raw, sizeof(T));
 }
 
-/// The soup of a square's two triangles; `claimed` as the count in the header.
+/// The soup of a square's two triangles, with `claimed` as the header's count.
 std::string square_stl(std::uint32_t claimed = 2, std::string header = "by a test") {
   header.resize(80);
   put(header, claimed);
@@ -34,7 +34,7 @@ std::string square_stl(std::uint32_t claimed = 2, std::string header = "by a tes
   return header;
 }
 
-/// Read as a file named so.
+/// Reads the bytes as a file of this name.
 ReadFile read_as(const char* name, std::string_view bytes) {
   const TempFolder folder;
   write_file(folder / name, bytes);
@@ -76,7 +76,7 @@ TEST_CASE("the size of a binary STL says more than its count") {
   const Quiet quiet;
   check_soup(read_as("m.stl", square_stl(0)));
   check_soup(read_as("m.stl", square_stl(7)));
-  // Only where it is that of no number of triangles.
+  // The count only matters where the size fits no number of triangles.
   check_soup(read_as("m.stl", square_stl(2) + "tail"));
 }
 

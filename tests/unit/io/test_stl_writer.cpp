@@ -35,7 +35,7 @@ TEST_CASE("a written STL has the corners and the normals of the triangles") {
   CHECK(vector_at(bytes, 84) == Vec3{0, 0, 1});
   CHECK(vector_at(bytes, 84 + 24) == Vec3{2, 0, 0});
   CHECK(vector_at(bytes, 84 + 50) == Vec3{0, 0, -1});
-  CHECK(vector_at(bytes, 84 + 100) == Vec3{0, 0, 0});  // of no area
+  CHECK(vector_at(bytes, 84 + 100) == Vec3{0, 0, 0});  // without area
   CHECK(bytes.substr(84 + 48, 2) == std::string(2, '\0'));
 }
 

@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t k_head_bytes = 37 + 8;
 
-/// A sheet in sweep order: its vertices come row by row, and so do its triangles. The first and the
-/// last row are boundary vertices.
+/// A sheet in sweep order: its vertices and triangles come row by row. The vertices of the first
+/// and last row are boundary vertices.
 StreamMesh sheet(std::uint32_t columns, std::uint32_t rows) {
   StreamMesh stream;
   stream.mesh = test::grid(columns, rows);
@@ -43,7 +43,7 @@ struct ReadBack {
   StreamInfo info;
   Mesh mesh;
   std::vector<std::uint32_t> boundary;
-  std::vector<std::uint32_t> finished;  // in the order in which they are finalised
+  std::vector<std::uint32_t> finished;  // in the order of finalisation
   std::size_t blocks = 0;
 };
 
@@ -72,7 +72,7 @@ ReadBack read_back(const std::string& file) {
   return read;
 }
 
-/// What the reader says of the file; nothing if it takes it.
+/// The error with which the reader refuses the file; empty if it accepts it.
 std::string stream_refusal(const std::string& file) {
   try {
     read_back(file);
@@ -82,7 +82,7 @@ std::string stream_refusal(const std::string& file) {
   return "";
 }
 
-/// Puts the right sums into a stream of one block of which something was changed.
+/// Writes valid checksums into a stream of one block after a change.
 std::string resealed(std::string file) {
   const auto put = [&](std::size_t at, std::uint64_t sum) {
     std::memcpy(file.data() + at, &sum, sizeof sum);
@@ -95,7 +95,7 @@ std::string resealed(std::string file) {
   return file;
 }
 
-/// The file of tiny() with another u32 in its only block, counted from the block's start in bytes.
+/// The file of tiny() with `value` at `offset` bytes from the start of its only block.
 std::string tiny_with(std::size_t offset, std::uint32_t value) {
   std::string file = encode_stream(tiny());
   std::memcpy(file.data() + k_head_bytes + offset, &value, sizeof value);
@@ -128,7 +128,7 @@ TEST_CASE("every vertex is finalised once, and a sheet's rows one after the othe
   REQUIRE(sorted.size() == read.mesh.positions.size());
   for (std::uint32_t v = 0; v < sorted.size(); ++v) REQUIRE(sorted[v] == v);
   for (std::size_t i = 0; i < read.finished.size(); ++i) {
-    REQUIRE(read.finished[i] < i + 2 * 51);  // none is finalised long after its turn
+    REQUIRE(read.finished[i] < i + 2 * 51);  // none is finalised much later than its turn
   }
 }
 
@@ -232,7 +232,7 @@ TEST_CASE("a stream's appearances come back") {
   StreamReader whole(fill_from(file, "stream"), "stream");
   CHECK(whole.info().appearances);
   CHECK(read_stream_mesh(whole).mesh.appearances == stream.mesh.appearances);
-  // As a part: boundary vertices first.
+  // Read as a part: boundary vertices come first.
   StreamReader reader(fill_from(file, "stream"), "stream");
   const Part part = read_stream(reader);
   REQUIRE(part.mesh.appearances.size() == part.mesh.positions.size());

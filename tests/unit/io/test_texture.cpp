@@ -36,7 +36,7 @@ ThirdColours thirds_of(const Texture& texture, const std::array<TexturePoint, 3>
 }  // namespace
 
 TEST_CASE("a corner has the mean of its third, in light") {
-  // White and black columns in turn: half of the light, not half of the level.
+  // Alternating white and black columns: half of the light, not half of the level.
   const Picture stripes = picture_of(64, 64, [](std::uint32_t x, std::uint32_t) {
     return x % 2 == 0 ? Texel{255, 255, 255} : Texel{0, 0, 0};
   });
@@ -58,7 +58,7 @@ TEST_CASE("corners have the colours of their own thirds") {
 }
 
 TEST_CASE("nothing bleeds in from beside a chart") {
-  // The chart is the triangle below the diagonal; what is beside it is green.
+  // The chart is the triangle below the diagonal; everything outside it is green.
   const Picture atlas = picture_of(64, 64, [](std::uint32_t x, std::uint32_t y) {
     return x + y < 63 ? k_texture_red : k_texture_green;
   });
@@ -72,7 +72,7 @@ TEST_CASE("of a triangle of many texels some are looked at, by a lattice") {
   });
   const double side = 1022.9 / 1024;
   check_all(thirds_of({atlas}, {{{0, 0}, {side, 0}, {0, side}}}), k_texture_red);
-  // Tiles without end take no time without end.
+  // Any number of tiles takes bounded time.
   const ThirdColours tiled = thirds_of({atlas}, {{{0, 0}, {10'000, 0}, {0, 10'000}}});
   for (const LinearColour& corner : tiled.corners) {
     CHECK(corner[0] == doctest::Approx(0.5).epsilon(0.1));
@@ -88,7 +88,7 @@ TEST_CASE("between texels the texture is interpolated") {
       {picture}, {{{middle, middle}, {middle + small, middle}, {middle, middle + small}}});
   const double light = (linear_of_srgb(85 / 255.0) + linear_of_srgb(170 / 255.0)) / 2;
   CHECK(made.corners[0][0] == doctest::Approx(light).epsilon(1e-3));
-  // A point and a line have no area, and a colour.
+  // A point and a line have no area, but a colour.
   const ThirdColours point =
       thirds_of({picture}, {{{middle, middle}, {middle, middle}, {middle, middle}}});
   CHECK(point.texels == 0);

@@ -29,7 +29,7 @@ struct Sampled {
   std::vector<std::optional<LinearColour>> colours;
 };
 
-/// Of a triangle for each material, each with its own vertices, and of a vertex without any.
+/// Samples a triangle per material, each with its own vertices, and a vertex without any.
 Sampled sample(const std::vector<TextureImage>& images,
                const std::vector<TextureMaterial>& materials,
                const TextureColours::Options& options) {
@@ -57,7 +57,7 @@ TEST_CASE("pictures are held as many at a time as the memory allows, to the same
                                          lost_image()};
   const Sampled at_once = sample(images, k_coloured_materials, {});
   CHECK(at_once.pictures == 2);
-  CHECK(at_once.scans == 2);  // for pictures, and for what has none
+  CHECK(at_once.scans == 2);  // one for the pictures, one for what has none
   const Sampled one_by_one = sample(images, k_coloured_materials, {.memory_bytes = 1});
   CHECK(one_by_one.scans == 3);
   CHECK(one_by_one.colours == at_once.colours);

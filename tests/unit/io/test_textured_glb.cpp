@@ -71,7 +71,7 @@ struct Gltf {
     return made;
   }
 
-  /// Of the corners of all triangles, primitive by primitive.
+  /// The texture coordinates of all triangles' corners, primitive by primitive.
   std::vector<CornerUvs> uvs() const {
     std::vector<CornerUvs> made;
     for (const Json& primitive : json["meshes"][0]["primitives"]) {
@@ -100,7 +100,7 @@ struct Gltf {
   }
 };
 
-/// The greatest difference, whichever corner of a triangle comes first.
+/// The greatest difference, independent of which corner of a triangle comes first.
 float greatest_textured_move(const std::vector<CornerUvs>& a, const std::vector<CornerUvs>& b) {
   REQUIRE(a.size() == b.size());
   float greatest = 0;
@@ -118,7 +118,7 @@ float greatest_textured_move(const std::vector<CornerUvs>& a, const std::vector<
   return greatest;
 }
 
-/// Real ones.
+/// The options with real pictures.
 MeshSinkOptions shown_options() {
   MeshSinkOptions options = square_options();
   options.pictures.names = {"maps/atlas.png", "bumps.jpg", "a b.png", "rough.png"};
@@ -159,7 +159,7 @@ TEST_CASE("a GLB has texture coordinates, and images in it") {
     CHECK(greatest_textured_move(gltf.uvs(), textured_square().columns.uvs) < 1.0F / 100'000);
     const Json& images = gltf.json["images"];
     REQUIRE(images.size() == 4);
-    const std::array<std::size_t, 4> order{0, 1, 3, 2};  // of their first use
+    const std::array<std::size_t, 4> order{0, 1, 3, 2};  // in the order of their first use
     for (std::size_t i = 0; i < 4; ++i) {
       CHECK(images[i]["mimeType"] == (i == 1 ? "image/jpeg" : "image/png"));
       CHECK((gltf.view(images[i]["bufferView"]) == options.pictures.load(order[i])));
@@ -200,7 +200,7 @@ TEST_CASE("a glTF has pictures beside it") {
 
 TEST_CASE("texture coordinates come without materials, and with channels") {
   const TempFolder folder;
-  Mesh mesh = textured_grid(300, 300);  // with indices of 32 bits
+  Mesh mesh = textured_grid(300, 300);  // needs indices of 32 bits
   const std::vector<Channel> channels{{"nx", ChannelType::float32, ChannelRole::normal},
                                       {"ny", ChannelType::float32, ChannelRole::normal},
                                       {"nz", ChannelType::float32, ChannelRole::normal},
@@ -287,7 +287,7 @@ TEST_CASE("a picture that glTF cannot show is left out with a warning") {
           Json::parse(R"({"name":"front","pbrMetallicRoughness":{"baseColorTexture":{"index":0},)"
                       R"("metallicFactor":0}})"));
   }
-  CHECK(files_in(folder) == 4);  // with m.bin and m_atlas.png
+  CHECK(files_in(folder) == 4);  // m.bin and m_atlas.png included
 }
 
 TEST_CASE("a GLB or glTF whose pictures cannot be read leaves nothing behind") {

@@ -24,7 +24,7 @@ TEST_CASE("an OBJ is written with texture coordinates, a library and pictures be
   CHECK(read_file(folder / "my_m_atlas.png") == "bytes of maps/atlas.png");
   CHECK(read_file(folder / "my_m_bumps.jpg") == "bytes of bumps.jpg");
   CHECK(read_file(folder / "my_m_a_b.png") == "bytes of C:\\tex\\a b.png");
-  CHECK(files_in(folder) == 5);  // "rough.png" has no word in a library
+  CHECK(files_in(folder) == 5);  // MTL has no keyword for "rough.png"
 }
 
 TEST_CASE("an OBJ has one vt for a vertex and its wedge, across batches") {
@@ -143,7 +143,7 @@ TEST_CASE("materials of a mesh without texture coordinates have no pictures") {
   }
   CHECK(read_file(folder / "m.mtl") ==
         "newmtl front\nKd 1 1 1\nd 1\nnewmtl back\nKd 1 1 1\nd 0.5\n");
-  CHECK(files_in(folder) == 6);  // with m.bin
+  CHECK(files_in(folder) == 6);  // m.bin included
 }
 
 TEST_CASE("a mesh that has texture coordinates may have no triangles, and no vertices") {

@@ -25,7 +25,7 @@ std::string face(const Triangle& triangle, const CornerUvs& uvs, const std::stri
   return made + more;
 }
 
-/// Of which the faces end in `first` and `second`.
+/// The file of a square whose faces end in `first` and `second`.
 std::string square_file(const std::string& comments, const std::string& properties,
                         const std::string& first, const std::string& second) {
   const Mesh square = textured_square();
@@ -48,7 +48,7 @@ TEST_CASE("a PLY has texture coordinates at its faces, and pictures beside it") 
                      raw<std::int32_t>({0}) + "\1", raw<std::int32_t>({1}) + "\2")));
   CHECK(read_file(folder / "m_atlas.png") == "bytes of maps/atlas.png");
   CHECK(read_file(folder / "m_a_b.png") == "bytes of C:\\tex\\a b.png");
-  CHECK(files_in(folder) == 3);  // it has no place for other maps
+  CHECK(files_in(folder) == 3);  // PLY has no place for other maps
 }
 
 TEST_CASE("a PLY with one picture for all triangles needs no numbers of pictures") {

@@ -20,7 +20,7 @@ using namespace meshfarm::test;
 
 namespace {
 
-/// Another level in each texel.
+/// A different level in each texel.
 Picture speckled(std::uint32_t width, std::uint32_t height) {
   return picture_of(width, height, [](std::uint32_t x, std::uint32_t y) {
     return Texel{static_cast<std::uint8_t>(x * 7 + y), static_cast<std::uint8_t>(x ^ y),
@@ -135,7 +135,7 @@ TEST_CASE("a cache keeps what was used last, and one tile at least") {
   tile(2, 4);
   tile(1, 4);
   CHECK(reads == 2);
-  tile(3, 4);  // 2 goes
+  tile(3, 4);  // evicts 2
   tile(1, 4);
   CHECK(reads == 3);
   tile(2, 4);

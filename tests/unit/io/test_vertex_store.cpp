@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t k_too_many_for_memory = std::uint64_t{3} << 20;
 
-/// Fills with 10,000 vertices; `is_final`: what is read is the last word.
+/// Fills with 10,000 vertices; `is_final`: the values read are final.
 std::uint64_t fill(VertexStore& store, const VertexStore::Filling& filling, bool is_final = true) {
   std::uint64_t taken = 0;
   store.fill(

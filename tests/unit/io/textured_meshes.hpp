@@ -16,13 +16,12 @@
 
 namespace meshfarm::test {
 
-/// Whose bytes are "bytes of NAME".
+/// Pictures whose bytes are "bytes of NAME".
 inline PictureFiles pictures_named(const std::vector<std::string>& names) {
   return {names, [names](std::size_t picture) { return "bytes of " + names.at(picture); }};
 }
 
-/// The square of k_square_vertices; its second triangle has another place on the picture for
-/// vertex 1.
+/// The square of k_square_vertices; vertex 1 has other texture coordinates in the second triangle.
 inline Mesh textured_square() {
   Mesh mesh{k_square_vertices, k_square_triangles};
   mesh.columns.uvs = {{{{0, 0}, {0.5F, 0}, {0, 1}}}, {{{0, 1}, {0.625F, 1}, {1, 1.0F / 3}}}};
@@ -30,7 +29,7 @@ inline Mesh textured_square() {
   return mesh;
 }
 
-/// Of three materials the first is not used.
+/// Three materials, the first of which is unused.
 inline MeshSinkOptions square_options() {
   MeshSinkOptions options;
   const LabelMeaning meaning{
@@ -64,7 +63,7 @@ inline Mesh textured_grid(int width, int height) {
   return mesh;
 }
 
-/// The mesh and its columns, in the format of the name.
+/// Writes the mesh and its columns, in the format that the name implies.
 inline void write_textured(const std::filesystem::path& path, const Mesh& mesh,
                            MeshSinkOptions options) {
   options.vertices = mesh.positions.size();
@@ -86,7 +85,7 @@ inline std::size_t lines_with(const std::string& text, std::string_view start) {
   return count;
 }
 
-/// Of the corners of an OBJ's triangles.
+/// The texture coordinates of the corners of an OBJ's triangles.
 inline std::vector<CornerUvs> uvs_of_obj(const std::string& text) {
   std::vector<Uv> uvs;
   std::vector<CornerUvs> made;

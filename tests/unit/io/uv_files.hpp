@@ -18,7 +18,7 @@ namespace meshfarm::test {
 
 using Names = std::vector<std::string>;
 
-/// A mesh file and those beside it.
+/// A mesh file and the files beside it.
 class UvModel {
  public:
   UvModel(std::string name, const std::string& bytes) : name_(std::move(name)) {
@@ -31,7 +31,7 @@ class UvModel {
     return *this;
   }
   std::filesystem::path path() const { return folder_ / name_; }
-  /// With its textures kept.
+  /// Keeps the textures.
   std::unique_ptr<MeshSource> open(unsigned threads = 2) const {
     return open_mesh(path(), {.threads = threads, .textures = Textures::keep});
   }
@@ -47,7 +47,7 @@ struct UvTriangles {
   std::vector<CornerUvs> uvs;
 };
 
-/// Of one scan; it has the columns that the source says.
+/// The triangles of one scan; checks that they have the columns that the source announces.
 inline UvTriangles triangles_of(MeshSource& source) {
   UvTriangles made;
   source.scan_triangles([&](const TriangleView& batch) {
@@ -60,7 +60,7 @@ inline UvTriangles triangles_of(MeshSource& source) {
   return made;
 }
 
-/// The message of the DataError that `use` ends in, from the file's name on.
+/// The message of the DataError that `use` throws, from the file's name on.
 template <class Use>
 std::string error_of(const Use& use) {
   try {
