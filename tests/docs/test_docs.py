@@ -17,7 +17,7 @@ import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 DRAGON = "dragon_vrip.ply.gz"
-# What the other pages find: some take up where README.md or the page before left off.
+# What the other pages expect: some continue where README.md or the previous page ended.
 BEFORE = """
 meshfarm cut dragon_vrip.ply.gz --stage dragon.stage --quiet > cut.log
 meshfarm simplify dragon_vrip.ply.gz -o small.ply --triangles 50000 --quiet > small.log
