@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the Debian package and looks at what is in it, and at manual and completion once unpacked.
+# Makes the Debian package, and checks its contents and the unpacked manual and completion.
 #   test_package.sh BUILD_FOLDER
 set -euo pipefail
 work=$(mktemp -d)
