@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# What the labs share; they source it. A lab runs the real program on real things: hosts in network
-# namespaces, Slurm, NFS. Each is called with the program, leaves nothing behind, and exits 77 with a
-# reason where it is skipped. With CI=true only what the kernel or the container forbids is skipped.
+# Shared by the labs, which source it. A lab runs the real program on the real thing: hosts in
+# network namespaces, Slurm, NFS. Each is called with the program, leaves nothing behind, and exits
+# 77 with a reason when skipped. With CI=true only what the kernel or the container forbids is
+# skipped.
 set -euo pipefail
 
 lab=$(basename "$0" .sh)
@@ -11,7 +12,7 @@ lab_root=$(cd "$lab_here/../.." && pwd)
 [ -x "${1:-}" ] || { echo "usage: $lab.sh PROGRAM" >&2; exit 2; }
 MESHFARM=$(realpath "$1")
 export MESHFARM
-# Not in /tmp/x: some of the labs' daemons want every folder above them to be root's.
+# Not below /tmp/x: some of the labs' daemons require that root owns every folder above them.
 work=$(mktemp -d "${TMPDIR:-/tmp}/meshfarm-lab.XXXXXX")
 
 # Something is missing that could be installed or set up.
@@ -20,7 +21,7 @@ skip() {
   echo "SKIPPED $lab: $1"
   exit 77
 }
-# The kernel or the container does not allow it, whatever is installed.
+# The kernel or the container forbids it, whatever is installed.
 skip_forbidden() {
   echo "SKIPPED $lab: not allowed here: $1"
   exit 77
@@ -45,8 +46,8 @@ need_commands() {
   done
 }
 
-# A mesh of $1 triangles and what becomes of it undisturbed, $work/expected.ply; cut into $2 parts at
-# the folder $3.
+# Makes a mesh of $1 triangles, and its undisturbed result $work/expected.ply; cuts it into $2 parts
+# in the folder $3.
 make_stage() {
   local triangles=$1 parts=$2 stage=$3
   [ -e "$work/mesh.ply" ] ||
@@ -60,8 +61,8 @@ make_stage() {
 check_result() {
   cmp "$1" "${2:-$work/expected.ply}" || fail "other bytes than undisturbed: $1"
 }
-# A stage at the folder $2 whose first run is to cut the mesh, once that is made, into $1 parts by
-# jobs; what becomes of it to the target of $farmed, $work/expected-farmed.ply, cut by one process.
+# Makes a stage in the folder $2 whose first run is to cut the mesh (made before) into $1 parts by
+# jobs; and the result for the target of $farmed, cut by one process: $work/expected-farmed.ply.
 farmed=(--ratio 0.2 --finish farm --composition sink)
 make_farmed_stage() {
   [ -e "$work/expected-farmed.ply" ] ||
@@ -70,7 +71,7 @@ make_farmed_stage() {
   "$MESHFARM" cut "$work/mesh.ply" --stage "$2" --parts "$1" --cut farm --blocks 6 --quiet > /dev/null
 }
 
-# Waits at most $1 seconds until the command that follows succeeds.
+# Waits at most $1 seconds for the command that follows to succeed.
 wait_for() {
   local until=$((SECONDS + $1))
   shift
@@ -83,8 +84,8 @@ has_results() { # STAGE COUNT
   [ "$(find "$1/results" -type f ! -name '.*' 2> /dev/null | wc -l)" -ge "$2" ]
 }
 
-# A program like ours whose every fsync takes $2 milliseconds, so that a run on small parts takes a
-# while without taking the machine's cores.
+# A copy of our program whose every fsync takes $2 milliseconds, so that a run on small parts lasts
+# a while without using up the machine's cores.
 make_slow_program() {
   cat > "$1" << END
 #!/usr/bin/env bash
@@ -120,7 +121,7 @@ hosts_down() {
     ip netns del "$name" || true
   done
 }
-# Not by 'ip netns exec': that mounts /sys anew, and slurmd misses its cgroups.
+# Not with 'ip netns exec', which mounts /sys anew: slurmd would miss its cgroups.
 on_host() { # NUMBER COMMAND...
   local name=$hosts_prefix$1
   shift

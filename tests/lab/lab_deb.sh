@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The Debian package in a bare Debian 12: installed by apt, then a run, the manual and the completion.
+# The Debian package in a bare Debian 12: apt installs it, then a run, the manual and the
+# completion.
 #   lab_deb.sh PROGRAM BUILD_FOLDER
 # shellcheck source=tests/lab/lab.sh
 . "$(dirname "${BASH_SOURCE[0]}")/lab.sh"

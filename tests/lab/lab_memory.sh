@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A real control group of 2 GB, nearly all of it page cache: two workers start in it, each takes its
-# share of what the cache would give back, and none is killed for memory.
+# share of the memory that the cache can give back, and none is killed for memory.
 #   lab_memory.sh PROGRAM
 # shellcheck source=tests/lab/lab.sh
 . "$(dirname "${BASH_SOURCE[0]}")/lab.sh"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Whole runs on real NFS, version 3 and 4.2, between kernels' own server and clients in User-Mode
-# Linux (nfs/boot.sh), with ventilator and workers on two clients; then with the disk full or slow, the
-# server restarted or away, and the links cut (nfs/scenario.sh).
+# Whole runs on real NFS, versions 3 and 4.2, between the kernel's own server and clients in
+# User-Mode Linux (nfs/boot.sh), with ventilator and workers on two clients; then with the disk full
+# or slow, the server restarted or away, and the links cut (nfs/scenario.sh).
 #   lab_nfs.sh PROGRAM
 # shellcheck source=tests/lab/lab.sh
 . "$(dirname "${BASH_SOURCE[0]}")/lab.sh"

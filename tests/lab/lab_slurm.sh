@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A real Slurm on hosts in network namespaces: both shapes of launch-slurm.sh, a node killed in the
-# middle of each run: the run completes with the same bytes, and Slurm is left with no job.
+# A real Slurm on hosts in network namespaces, in both shapes of launch-slurm.sh, with a node killed
+# in the middle of each run: the run completes with the same bytes, and no job is left in Slurm.
 #   lab_slurm.sh PROGRAM
 # shellcheck source=tests/lab/lab.sh
 . "$(dirname "${BASH_SOURCE[0]}")/lab.sh"
@@ -31,7 +31,7 @@ run_shape() { # SHAPE STAGE EXPECTED TARGET...
   local shape=$1 stage=$2 expected=$3 launcher code=0
   shift 3
   say "a run in the shape '$shape' on three nodes"
-  # Some sites pass no environment on.
+  # Some sites do not pass the environment on.
   MESHFARM=$work/slow-meshfarm on_host 1 "$lab_root/scripts/launch-slurm.sh" "$shape" 3 \
     --export=NONE -- "$stage" \
     "$@" -o "$stage.ply" > "$stage.out" 2>&1 &

@@ -11,7 +11,7 @@ need_root
 need_commands ip nsenter slurmctld slurmd sbatch scontrol srun munged python3
 
 node=${hosts_prefix}2
-# slurmd leaves the groups that it made.
+# slurmd leaves its groups behind.
 # shellcheck disable=SC2317 # reached by the trap
 remove_groups() {
   find /sys/fs/cgroup -depth -type d -path "*/slurm_$node*" -exec rmdir {} + 2> /dev/null
@@ -46,7 +46,7 @@ $(cat "$work/slurm.log"; grep -h error "$slurm/slurmd-$node.log" | tail -n 1)"
 
 make_stage 6000000 3 "$work/stage"
 
-# What the job does; it tells what its group says to files in $work.
+# The job's script; it writes what its group reports to files in $work.
 cat > "$work/job" << 'END'
 #!/usr/bin/env bash
 work=$1

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Four hosts that ssh reaches, in network namespaces; one is cut off for ten seconds in the middle of
-# a run that launch-ssh.sh started, and healed: the same bytes, its jobs go to others in time, and no
-# worker is left when the launcher ends or is killed.
+# Four hosts reached by ssh, in network namespaces. One is cut off for ten seconds in the middle of
+# a run that launch-ssh.sh started, then reconnected: the bytes are the same, its jobs go to others
+# in time, and no worker is left when the launcher ends or is killed.
 #   lab_ssh.sh PROGRAM
 # shellcheck source=tests/lab/lab.sh
 . "$(dirname "${BASH_SOURCE[0]}")/lab.sh"
@@ -45,7 +45,7 @@ no_workers_left() {
 no_run_left() {
   ! pgrep -f "$MESHFARM run $stage" > /dev/null
 }
-# Lines with the time at which each came.
+# Prefixes each line with the time of its arrival.
 stamped() {
   local line
   while IFS= read -r line; do echo "$(($(date +%s%N) / 1000000)) $line"; done
@@ -57,7 +57,7 @@ make_stage 200000 120 "$stage"
 printf 'host2:1\nhost3:1  # a comment\n' > "$work/hosts"
 
 say "a run on four hosts"
-# On a terminal progress is shown five times a second.
+# On a terminal, progress is shown five times a second.
 command="'$lab_root/scripts/launch-ssh.sh' --hosts '$work/hosts' host4:1 host5:1 -- '$stage' \
   --ratio 0.05 -o '$work/out.ply' --bind 10.77.0.1; echo \"code \$?\""
 on_host 1 script -qfc "$command" /dev/null < /dev/null | stdbuf -o0 tr '\r' '\n' | stamped \
@@ -77,15 +77,15 @@ check_result "$work/out.ply"
 away=$(awk '/ given out again/ { print $1; exit }' "$work/run.log")
 [ -n "$away" ] || fail "no job was given out again: $(cat "$work/run.log")"
 say "done, the same bytes; host 3's jobs were elsewhere after $((away - cut)) ms"
-# Three heartbeats of a second from the last one heard, the ventilator's look at the clock, and half
-# a second between two lines of progress.
+# Three heartbeats of one second each since the last one heard, the ventilator's look at the clock,
+# and half a second between two lines of progress.
 [ $((away - cut)) -le 4200 ] || fail "that is more than three heartbeats"
 wait_for 20 no_workers_left || fail "workers are left after the run"
 
 say "a launcher that is killed takes its workers along; cut and finish are jobs from here on"
 make_farmed_stage 24 "$stage-2"
 stage=$stage-2
-# Not through on_host: its processes are not ours to kill by one number.
+# Not through on_host: its processes could not be killed by a single process id.
 on_host 1 setsid "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" "${farmed[@]}" \
   -o "$work/out2.ply" --bind 10.77.0.1 > /dev/null 2>&1 &
 wait_for 30 has_results "$stage" 5 || fail "no results of the second run"
@@ -94,9 +94,9 @@ wait_for 30 no_workers_left || fail "workers outlive a killed launcher"
 
 say "an interrupted one leaves a stage that the same command takes up"
 pkill -TERM -f "$MESHFARM run $stage" || true
-# It leaves the output to the next only when it is gone.
+# It releases the output for the next run only when it has ended.
 wait_for 20 no_run_left || fail "a run that was asked to leave is still there"
-# The launcher is held back after it has passed the signal on: its run may be gone by then.
+# The launcher is delayed after it has passed the signal on: its run may have ended by then.
 on_host 1 strace -o /dev/null -e trace=kill -e inject=kill:delay_exit=500000 \
   "$lab_root/scripts/launch-ssh.sh" host2:1 host3:1 -- "$stage" "${farmed[@]}" \
   -o "$work/out2.ply" --bind 10.77.0.1 > /dev/null 2> "$work/run2.err" &

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A Slurm of its own on hosts in network namespaces, for the labs that source it after lab.sh: host 1
-# has the controller, the others are nodes.
+# A private Slurm on hosts in network namespaces, for the labs that source this after lab.sh: host 1
+# is the controller, the others are nodes.
 # shellcheck disable=SC2154 # what lab.sh sets
 export PATH=$PATH:/usr/sbin:/sbin
 slurm=$work/slurm
@@ -9,7 +9,7 @@ slurm_down() {
   hosts_down
   [ ! -s "$slurm/munged.pid" ] || kill "$(cat "$slurm/munged.pid")" 2> /dev/null || true
 }
-# The lines that its labs have in common; $1 is the number of hosts.
+# The configuration lines shared by the labs; $1 is the number of hosts.
 common_configuration() {
   cat << END
 ClusterName=lab
@@ -36,12 +36,12 @@ KillWait=3
 PartitionName=lab Nodes=${hosts_prefix}[2-$1] Default=YES MaxTime=60 State=UP
 END
 }
-# $1 hosts; slurm.conf also has the lines of the standard input.
+# $1 hosts; the lines of the standard input are added to slurm.conf.
 slurm_up() {
   local i
   mkdir -p "$slurm/state"
   chmod 755 "$work" "$slurm"
-  # The nodes' lines stand before the partition's.
+  # The nodes' lines must come before the partition's.
   { cat; common_configuration "$1"; } > "$slurm/slurm.conf"
   dd if=/dev/urandom of="$slurm/key" bs=128 count=1 status=none
   chmod 600 "$slurm/key"

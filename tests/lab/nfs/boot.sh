@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Boots a User-Mode Linux kernel, an ordinary process, that has this machine's root by hostfs, a real
+# Boots a User-Mode Linux kernel (an ordinary process) on this machine's root by hostfs, with a real
 # NFS server and two real NFS clients of it (init.sh), and runs a script in it:
 #   boot.sh VERSION SECONDS SCRIPT [ARGUMENT...]
-# The exit code is the script's; 124 if it took longer than SECONDS, 98 if the kernel itself stood still,
-# 99 if it did not get so far.
+# The exit code is the script's; 124 if it took longer than SECONDS, 98 if the kernel itself stood
+# still, 99 if it did not get that far.
 set -euo pipefail
 version=$1
 seconds=$2
@@ -35,7 +35,7 @@ while kill -0 $kernel 2> /dev/null; do
   elif [ $((SECONDS - since)) -ge 60 ]; then
     code=98
   fi
-  # With the processes that it runs its own in.
+  # Together with the processes in which it runs its own.
   [ -z "$code" ] || pkill -KILL -f "umid=$(basename "$work")"
   sleep 1
 done

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# The first process of the kernel that boot.sh boots. Makes the server, /srv/x on a disk of 64 MB, and
-# its clients at /mnt/c1 and /mnt/c2, each with a network link (the server's ends are s1 and s2) and a
-# cache of its own; runs the command; ends the kernel.
+# The first process of the kernel that boot.sh boots. Sets up the server, /srv/x on a disk of 64 MB,
+# and its clients at /mnt/c1 and /mnt/c2, each with a network link of its own (the server's ends are
+# s1 and s2) and a cache of its own; runs the command; ends the kernel.
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin
 mount -t proc proc /proc
 mount -t sysfs sys /sys
-# The root is this machine's own: what is written to is covered first.
+# The root is this machine's own: folders that are written to are covered first.
 for folder in /run /var/lib/nfs /mnt /srv /dev/shm; do
   mkdir -p $folder
   mount -t tmpfs tmpfs $folder
@@ -14,7 +14,8 @@ mkdir -p /run/netns /run/rpcbind /run/sendsigs.omit.d /var/lib/nfs/{v4recovery,s
 touch /var/lib/nfs/etab /var/lib/nfs/rmtab
 # shellcheck disable=SC1090 # made by boot.sh
 . "$NFS_JOB"
-# Shows boot.sh that this kernel runs: a new file each time, as the host hears of the times of a new one.
+# Shows boot.sh that this kernel runs: a new file each time, because the host only notices times of
+# new files.
 while touch "$NFS_PULSE.new" && mv "$NFS_PULSE.new" "$NFS_PULSE"; do sleep 5; done &
 
 hostname server
@@ -44,7 +45,7 @@ for i in 1 2; do
   ip -n c$i addr add 10.9.$i.2/24 dev c$i
   ip -n c$i link set c$i up
   mkdir -p /mnt/c$i
-  # By its name a client is known to an NFSv4 server: two of one name would be one.
+  # An NFSv4 server identifies a client by its name: two with one name would be one client.
   # shellcheck disable=SC2016 # for the inner shell
   nsenter --net=/run/netns/c$i unshare --uts bash -c 'hostname "$1"; shift; exec "$@"' _ client$i \
     mount -t nfs -o "$options,hard,proto=tcp" 10.9.$i.1:$export_path /mnt/c$i

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Inside the kernel that boot.sh boots: runs with ventilator and sink on one NFS client and a worker
-# on each; undisturbed, then with the disk full, files that take long to reach the disk, the server
-# restarted or away for long, the links cut. Each ends with the same bytes, or with code 3 and with the
-# same bytes when the same command is given again; what only takes its time must not stop a run, nor
-# cost a worker its life.
+# on each. First undisturbed, then with the disk full, files that take long to reach the disk, the
+# server restarted or away for long, the links cut. Each run ends with the same bytes, or with code
+# 3 and then with the same bytes when the same command is given again. What merely takes time must
+# neither stop a run nor cost a worker its life.
 #   scenario.sh PROGRAM CUT-STAGE EXPECTED.ply MESH.ply EXPECTED-FARMED.ply TARGET...
-# The last are of a run whose cut, into 8 parts, and finish are jobs.
+# The last arguments are of a run whose cut (into 8 parts) and finish are jobs.
 set -uo pipefail
 meshfarm=$1
 cut_stage=$2
@@ -35,7 +35,7 @@ wait_for() { # SECONDS COMMAND...
     sleep 0.2
   done
 }
-# A command that uses a file system, which nothing but the file system can keep from ending.
+# Runs a command that uses a file system; only the file system can keep it from ending.
 within() { # SECONDS COMMAND...
   local seconds=$1
   shift
@@ -48,7 +48,7 @@ within() { # SECONDS COMMAND...
   fi
   wait $command
 }
-# Asked of the server's own disk: a client of ours would remember the answers.
+# Looks at the server's own disk, as a client would cache the answers.
 has_results() { # STAGE COUNT
   [ "$(find "/srv/x/$1/results" -type f ! -name '.*' | wc -l)" -ge "$2" ]
 }
@@ -59,8 +59,8 @@ has_ended() { # PID
 new_stage() { # NAME
   within 60 cp -r "$cut_stage" "$ventilator_side/$1" || fail "no room for a stage"
 }
-# Starts the processes, by way of $launcher; sets run, workers. With $heartbeat_ms ventilator and sink
-# are processes of their own.
+# Starts the processes through $launcher; sets run, workers. With $heartbeat_ms ventilator and sink
+# are separate processes.
 launcher=()
 heartbeat_ms=
 start() { # STAGE
@@ -89,7 +89,7 @@ finish() { # SECONDS
   wait_for 30 has_ended "${workers[0]}" || fail "a worker does not end"
   wait_for 30 has_ended "${workers[1]}" || fail "a worker does not end"
 }
-# After a disturbance: done, or resumable and done when asked again; then the bytes.
+# After a disturbance: the run is done, or resumable and done on the second try; checks the bytes.
 check() { # STAGE
   if [ "$code" -eq 3 ]; then
     say "it stopped, resumable: $(tail -n 1 "$logs/$1.run")"
@@ -97,15 +97,15 @@ check() { # STAGE
     finish 90
   fi
   [ "$code" -eq 0 ] || fail "the code of the run is $code"
-  # By way of the other client.
+  # Through the other client.
   within 60 cmp "$worker_side/$1.ply" "$expected" || fail "other bytes"
   say "the same bytes"
   within 60 rm -rf "${ventilator_side:?}/$1" "$ventilator_side/$1.ply"
 }
-# The run was done in one go, and by the workers that it began with.
+# The run was done in one go, by the workers that it began with.
 unharmed() { # STAGE
   [ "$code" -eq 0 ] || fail "the code of the run is $code"
-  # Once all is done they leave without a word.
+  # When all is done workers leave without a message.
   python3 - "$ventilator_side/$1"/log/*.trace << 'END' || fail "a worker was given up"
 import json, sys
 lines = [json.loads(line) for line in open(sys.argv[1])]
@@ -121,7 +121,7 @@ says() { # STAGE WORDS
 }
 fill_disk() {
   fallocate -l 1G /srv/x/filler 2> /dev/null
-  # More than once: who finds no room removes what it has begun.
+  # More than once, because whoever finds no room removes what it has begun.
   for filler in 2 3 4; do
     dd if=/dev/zero of=/srv/x/filler$filler bs=4k 2> /dev/null
     sleep 1
@@ -176,7 +176,7 @@ say "each of the first files takes 20 s to reach the disk"
 new_stage late
 # The host may be busy, but no thread may be silent for as long as a file takes.
 heartbeat_ms=5000
-# Counted by thread: both slots of a worker, and the sink's disk.
+# Counted per thread: both slots of a worker, and the sink's disk thread.
 launcher=(strace --seccomp-bpf -D -f -qq -o /dev/null -e trace=fsync -e inject=fsync:delay_exit=20000000:when=2)
 start late
 launcher=()
@@ -225,7 +225,7 @@ check link1
 say "cut and finish are jobs, and the server is restarted while there is something to cut"
 expected=$farmed_expected
 target=("${farmed_target[@]}")
-# The input is on NFS, too: workers see whether it is the one that the stage was made for.
+# The input is on NFS, too: workers check that it is the one that the stage was made for.
 cp "$mesh" "$ventilator_side/mesh.ply" || fail "no room for the mesh"
 "$meshfarm" cut "$ventilator_side/mesh.ply" --stage "$ventilator_side/farmed" --parts 8 --cut farm \
   --blocks 6 -q > /dev/null || fail "the cut is not planned"
