@@ -60,7 +60,7 @@ std::string text_of(const fs::path& path) {
 std::string reason_in(const std::string& err) {
   constexpr std::string_view k_error = ": error: ";
   const std::size_t at = err.rfind(k_error);
-  if (at == std::string::npos) return "see its words";
+  if (at == std::string::npos) return "see its messages";
   const std::size_t begin = at + k_error.size();
   return err.substr(begin, err.find('\n', begin) - begin);
 }
@@ -78,8 +78,8 @@ class BatchCommand : public Command {
              po::positional_options_description& positional) override {
     options.add_options()("input", po::value(&inputs_)->required(), "")(
         "output,o", po::value(&output_)->required()->value_name("FOLDER"),
-        "where the results go, by the names of the files and in their formats; what was done stays "
-        "done when the same command is run again");
+        "where the results go, with the names and formats of the input files; running the same "
+        "command again skips finished files");
     output_words_.add(options);
     target_.add(options);
     options.add_options()("workers", po::value(&workers_)->default_value(workers_)->value_name("N"),
@@ -219,7 +219,7 @@ class BatchCommand : public Command {
     }
     std::error_code ignored;
     if (!keys_.empty()) fs::remove_all(keys_, ignored);
-    if (stop) log_info("stopped; what is done is kept: the same command goes on from there");
+    if (stop) log_info("stopped; finished work is kept: run the same command again to continue");
   }
 
   void start(const std::vector<std::string>& keys) {

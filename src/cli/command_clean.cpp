@@ -15,7 +15,8 @@ class CleanCommand : public Command {
   std::string_view name() const override { return "clean"; }
   std::string_view synopsis() const override { return "STAGE [--dry-run]"; }
   std::string_view summary() const override {
-    return "remove from a stage what no run needs: finished runs' results, leftovers of the dead";
+    return "remove files that no run needs from a stage: results of finished runs, leftovers of "
+           "dead processes";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {

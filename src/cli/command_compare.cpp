@@ -21,10 +21,8 @@ class CompareCommand : public Command {
   std::string_view name() const override { return "compare"; }
   std::string_view synopsis() const override { return "A B"; }
   std::string_view summary() const override {
-    return "sampled distances between two meshes and differences of their facing, colours, "
-           "normals, "
-           "other values, and labels of triangles, both ways, and the topology, sizes, angles and "
-           "crossings of both";
+    return "compare two meshes in both directions: sampled distances, facing, colours, normals, "
+           "other values and triangle labels; also topology, sizes, angles and crossings of each";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {

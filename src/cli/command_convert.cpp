@@ -35,17 +35,16 @@ class ConvertCommand : public Command {
         "threads", po::value(&threads_)->default_value(threads_)->value_name("N"),
         "threads that parse text (0: one a core)")(
         "uv", po::value(&uv_)->default_value(uv_)->value_name("auto|keep|colours|drop"),
-        "textures: keep: their coordinates, and pictures beside the output or in it; colours: "
-        "theirs become those of the vertices; drop: they are left out; auto: keep, or colours "
-        "where "
-        "the output has a place for these only");
+        "textures: keep: keep their coordinates, and pictures beside the output or in it; colours: "
+        "turn them into vertex colours; drop: leave them out; auto: keep, or colours if the output "
+        "format can store only those");
     output_words_.add(options);
     talk_.add_quiet(options);
     positional.add("input", 1).add("output", 1);
   }
   void check() override {
     if (uv_ == "bake") {
-      throw UsageError("--uv bake is of 'simplify' and 'run': a new picture needs a stage");
+      throw UsageError("--uv bake needs a stage: use 'simplify' or 'run'");
     }
     if (is_output_format(output_)) texture_words_for(output_, uv_);
   }

@@ -30,7 +30,8 @@ class InfoCommand : public Command {
   std::string_view name() const override { return "info"; }
   std::string_view synopsis() const override { return "FILE | STREAM | STAGE"; }
   std::string_view summary() const override {
-    return "counts, bounding box and topology of a mesh file; what a stream or a stage holds";
+    return "show counts, bounding box and topology of a mesh file, or the contents of a stream or "
+           "a stage";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
@@ -45,7 +46,8 @@ class InfoCommand : public Command {
     positional.add("file", 1);
   }
   void check() override {
-    if (figures_ && no_topology_) throw UsageError("--figures goes without --no-topology");
+    if (figures_ && no_topology_)
+      throw UsageError("--figures cannot be combined with --no-topology");
     measure_.check();
   }
   int run() override {

@@ -25,7 +25,7 @@ class ReportCommand : public Command {
         "epoch", po::value(&epoch_)->value_name("N"),
         "the run of this epoch (0, the default: the last)")(
         "up", po::value(&up_)->value_name("x|y|z|-x|-y|-z"),
-        "the mesh's axis that points up (default: y, or z if the mesh lies)");
+        "the mesh's axis that points up (default: y, or z if the mesh is flat along z)");
     positional.add("stage", 1);
   }
   void check() override {

@@ -35,8 +35,9 @@ class RunCommand : public Command {
     return "STAGE [-o OUTPUT] (--ratio R | --triangles N | --error LENGTH)";
   }
   std::string_view summary() const override {
-    return whose_ == Workers::own ? "simplify a stage on this machine: nothing is cut again"
-                                  : "simplify a stage: ventilator and sink, for workers to join";
+    return whose_ == Workers::own
+               ? "simplify a stage on this machine, without cutting again"
+               : "simplify a stage: start ventilator and sink, and let workers join";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
@@ -52,10 +53,9 @@ class RunCommand : public Command {
                                                  : "worker processes started here");
     if (whose_ == Workers::of_any_host) network_.add(options);
     schedule_.add(options);
-    options.add_options()(
-        "worker-words", po::bool_switch(&worker_words_),
-        "only print, one a line, what a 'meshfarm worker STAGE' of this run is to "
-        "be started with");
+    options.add_options()("worker-words", po::bool_switch(&worker_words_),
+                          "only print the options with which to start each 'meshfarm worker STAGE' "
+                          "of this run, one word per line");
     when_full_.add(options);
     talk_.add(options);
     positional.add("stage", 1);
@@ -92,7 +92,7 @@ class RunCommand : public Command {
         stop);
     if (code == 0 && !report_.empty()) write_run_report({stage_, report_, MadeBy::this_command});
     if (code == 3) {
-      log_info("stopped; what is done is kept: the same command goes on from there");
+      log_info("stopped; finished work is kept: run the same command again to continue");
     }
     return code;
   }

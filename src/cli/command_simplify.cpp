@@ -104,8 +104,8 @@ class SimplifyCommand : public Command {
     }
     if (code == 3) {
       log_info(
-          "stopped; the parts are kept: the same command goes on from there, and so does "
-          "'meshfarm replay " +
+          "stopped; the parts are kept: to continue, run the same command again, or 'meshfarm "
+          "replay " +
           stage_ + " -o " + output_ + "' with the same target");
     }
     return code;

@@ -29,7 +29,7 @@ class SimulateCommand : public Command {
                           "default: 24,240,10000); with --seeds one number (default: 24)");
     plan_.add(options);
     options.add_options()("seeds", po::value(&seeds_.count)->value_name("COUNT"),
-                          "try so many histories, each with its own mix of faults");
+                          "number of histories to try, each with its own mix of faults");
     options.add_options()("seed", po::value(&seed_)->value_name("N"),
                           "try this history; with --seeds: begin with it");
     options.add_options()("jobs",

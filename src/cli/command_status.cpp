@@ -30,22 +30,23 @@ class StatusCommand : public Command {
   std::string_view name() const override { return "status"; }
   std::string_view synopsis() const override { return "STAGE [--watch | --serve PORT]"; }
   std::string_view summary() const override {
-    return "how far a stage's run is, and what each worker does";
+    return "show the progress of a stage's run and what each worker is doing";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
     options.add_options()("stage", po::value(&stage_)->required(), "")(
         "watch", po::bool_switch(&watch_),
-        "until the run is over: as a screen that is renewed every second (q leaves it), or as "
-        "lines where the output is no terminal")(
+        "watch until the run is over: on a screen redrawn every second (q quits), or as lines if "
+        "the output is not a terminal")(
         "serve", po::value<int>()->value_name("PORT")->notifier([this](int port) { port_ = port; }),
-        "as a page for browsers of this host, at http://localhost:PORT (0: any port that is "
-        "free), until it is interrupted")("json", po::bool_switch(&json_),
-                                          "as JSON (with --watch: one object after another)");
+        "serve a page for browsers on this host at http://localhost:PORT (0: any free port), until "
+        "interrupted")("json", po::bool_switch(&json_),
+                       "as JSON (with --watch: one object after another)");
     positional.add("stage", 1);
   }
   void check() override {
-    if (port_ && (watch_ || json_)) throw UsageError("--serve goes without --watch and --json");
+    if (port_ && (watch_ || json_))
+      throw UsageError("--serve cannot be combined with --watch or --json");
     if (port_ && (*port_ < 0 || *port_ > 65535)) throw UsageError("--serve: a port is 0 to 65535");
   }
   int run() override {

@@ -33,7 +33,8 @@ class VentilatorCommand : public FarmCommand {
     when_full_.add(options);
     options.add_options()("heartbeat-ms",
                           po::value(&heartbeat_ms_)->default_value(heartbeat_ms_)->value_name("N"),
-                          "a worker or sink that is silent three times as long is lost");
+                          "interval of heartbeats in milliseconds; a worker or sink that is silent "
+                          "for three intervals is lost");
     options.add_options()(
         "wait", po::value(&wait_s_)->default_value(wait_s_)->value_name("SECONDS"),
         "how long to look for a sink if the output was made before, and to wait for "

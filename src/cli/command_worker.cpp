@@ -32,10 +32,10 @@ class WorkerCommand : public FarmCommand {
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {
     add_stage(options, positional, StageIs::optional);
-    options.add_options()(
-        "pool", po::value(&pool_)->value_name("FOLDER"),
-        "serve the stages in this folder, or linked there, one run after another: the one with "
-        "the fewest workers for its remaining work first; looks on after the end of each");
+    options.add_options()("pool", po::value(&pool_)->value_name("FOLDER"),
+                          "serve the runs of all stages in this folder, or linked there, one after "
+                          "another: first the run with the fewest workers for its remaining work; "
+                          "keep looking for runs after each one");
     options.add_options()("wait", po::value(&wait_s_)->value_name("SECONDS"),
                           "how long to look for a ventilator (default: 60; with --pool: for ever)");
     options.add_options()("speed", po::value(&speed_)->value_name("N"),
@@ -44,13 +44,11 @@ class WorkerCommand : public FarmCommand {
         "threads", po::value(&threads_)->default_value(threads_)->value_name("N"),
         "parts simplified at once, 1 to 256")(
         "memory", po::value(&memory_)->value_name("SIZE"),
-        "what parts in work may take together, as 8G (default: this "
-        "worker's share of what the host "
-        "or its control group has free; 0: no limit)");
-    options.add_options()(
-        "run", po::value(&run_)->value_name("KEY"),
-        "serve this run only, as 'meshfarm run --worker-words' tells it (default: "
-        "the newest of the stage)");
+        "memory that all parts in progress may take together, as 8G (default: this worker's share "
+        "of the free memory of the host or its control group; 0: no limit)");
+    options.add_options()("run", po::value(&run_)->value_name("KEY"),
+                          "serve only the run with this key, as printed by 'meshfarm run "
+                          "--worker-words' (default: the newest run of the stage)");
     security_.add(options);
     talk_.add_quiet(options);
   }

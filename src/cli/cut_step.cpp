@@ -41,7 +41,7 @@ Manifest taken_up(const Stage& stage, const CutStep& step) {
     throw DataError(root + ": holds a finished cut of " + what + "; 'meshfarm replay " + root +
                     "' uses it, or remove it to cut again");
   }
-  log_info(root + " holds this cut already; it is taken up");
+  log_info(root + " already holds this cut; it is used again");
   return decode_manifest(stage.read(ManifestName{}), stage.path(ManifestName{}).string());
 }
 

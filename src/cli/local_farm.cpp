@@ -48,7 +48,7 @@ Crew crew_for(const LocalFarm& farm, const Manifest& manifest) {
   if (crew.workers < farm.workers) {
     log_warning("only " + std::to_string(crew.workers) + " of " + std::to_string(farm.workers) +
                 " workers are started: a part takes about " + std::to_string(largest >> 20) +
-                " MiB, " + std::to_string(memory >> 20) + " are free; more --parts help");
+                " MiB, " + std::to_string(memory >> 20) + " MiB are free; use more --parts");
   }
   crew.memory = std::max(crew.memory, largest);
   return crew;

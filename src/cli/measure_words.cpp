@@ -25,7 +25,7 @@ void MeasureWords::add(po::options_description& options) {
   options.add_options()("memory", po::value(&memory_)->default_value(memory_)->value_name("BYTES"),
                         "memory to work with, as 512M or 2G; what does not fit goes to scratch "
                         "files")("scratch", po::value(&scratch_)->value_name("FOLDER"),
-                                 "where these lie (default: $TMPDIR, or /tmp)")(
+                                 "folder for scratch files (default: $TMPDIR, or /tmp)")(
       "threads", po::value(&divide.threads)->value_name("N"), "threads (0, the default: cores)");
 }
 

@@ -56,29 +56,28 @@ void CutWords::add(po::options_description& options) {
       "cut: compact parts, each simplified in memory; stream: slabs along the "
       "longest axis, each swept through a bounded buffer")(
       "cut", po::value(&where)->default_value(where)->value_name("here|farm|auto"),
-      "with --scheme cut: here: this host cuts; farm: the first jobs of a run cut, on all hosts, "
-      "of "
-      "a binary PLY file of triangles that all hosts see; auto: farm, if simplify keeps no parts, "
-      "the mesh is large, and there are workers enough")(
+      "with --scheme cut: here: this host cuts; farm: the first jobs of a run cut, on all hosts; "
+      "the input must be a binary PLY file of triangles that all hosts see; auto: farm if simplify "
+      "keeps no parts, the mesh is large and there are enough workers")(
       "blocks", po::value(&blocks)->value_name("N"),
-      "with --cut farm: blocks of vertices, and of triangles, up to 144 (0, the default: of about "
-      "300,000 each); the parts do not depend on it")(
+      "with --cut farm: number of blocks that vertices and triangles are each divided into, up to "
+      "144 (0, the default: of about 300,000 each); the parts do not depend on it")(
       "sort", po::value(&sort)->default_value(sort)->value_name("here|farm"),
       "with --scheme stream: here: sort the slabs on this host; farm: the first jobs of a run sort "
-      "them, on all hosts")("parts", po::value(&cut.parts)->value_name("N"),
-                            "number of parts (0, the default: parts of about one million "
-                            "triangles, and at least 16 of a large "
-                            "mesh) or streams (of 1.2 million triangles each)")(
+      "them, on all hosts")(
+      "parts", po::value(&cut.parts)->value_name("N"),
+      "number of parts (0, the default: about one million triangles each, and at least 16 parts "
+      "for a large mesh) or of streams (0, the default: 1.2 million triangles each)")(
       "weld", po::value(&weld)->default_value(weld)->value_name("exact|off"),
       "exact: merge vertices at the same position, except where surfaces only touch; off: do not "
-      "merge")("attributes",
-               po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
-               "auto: colours, normals and other numbers that the vertices have, and materials or "
-               "other labels of triangles, if the formats have a place for them; none: positions "
-               "only; LIST: these, as in red,green,blue ('colours' and 'normals' stand for "
-               "theirs)")("uv", po::value(&uv)->default_value(uv)->value_name(k_uv_words),
-                          k_uv_help)("threads", po::value(&cut.threads)->value_name("N"),
-                                     "threads of the cut (0, the default: cores)")(
+      "merge")(
+      "attributes", po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
+      "auto: colours, normals and other numbers of the vertices, and materials or other labels of "
+      "the triangles, if the formats can store them; none: positions only; LIST: only these, as in "
+      "red,green,blue ('colours' and 'normals' stand for all of theirs)")(
+      "uv", po::value(&uv)->default_value(uv)->value_name(k_uv_words), k_uv_help)(
+      "threads", po::value(&cut.threads)->value_name("N"),
+      "threads of the cut (0, the default: cores)")(
       "memory", po::value(&memory)->value_name("BYTES"),
       "memory of the cut, for example 2G: with --scheme stream for sorting (default: 512M), with "
       "--scheme cut for the parts that are made at once (default: no limit)")(
@@ -216,10 +215,10 @@ void ScheduleWords::add(po::options_description& described) {
       "dealt out at the start, in sets of equal estimated time")(
       "expect-workers",
       po::value(&options.expect_workers)->default_value(options.expect_workers)->value_name("N"),
-      "with --schedule static: wait for so many workers before parts are dealt out")(
+      "with --schedule static: wait for this many workers before dealing out parts")(
       "hang-seconds", po::value(&hang_s)->default_value(hang_s)->value_name("N"),
-      "give a part to another worker after so many seconds without progress, but not before three "
-      "times its estimated time");
+      "give a part to another worker after this many seconds without progress, but not before "
+      "three times its estimated time");
 }
 
 void ScheduleWords::check() {
@@ -245,8 +244,8 @@ std::vector<std::string> ScheduleWords::words() const {
 
 void FullWords::add(po::options_description& options) {
   options.add_options()("no-wait", po::bool_switch(&no_wait),
-                        "where the disk is full: end with 3, to be taken up again, instead of "
-                        "waiting for room");
+                        "if the disk is full, exit with code 3 instead of waiting for room; the "
+                        "same command continues later");
 }
 
 std::vector<std::string> FullWords::words() const {

@@ -81,7 +81,7 @@ Past read_past(const std::string& path) {
 void PlanWords::add(po::options_description& options) {
   options.add_options()("stage", po::value(&stages), "");
   options.add_options()("parts", po::value(&parts)->value_name("N"),
-                        "plan for the mesh cut into so many parts");
+                        "plan for the mesh cut into this many parts");
   options.add_options()("schedule",
                         po::value(&schedule)->default_value(schedule)->value_name("dynamic|static"),
                         "dynamic: each job goes to the worker that is expected to finish it first; "
@@ -94,13 +94,13 @@ void PlanWords::add(po::options_description& options) {
                         "memory in which a host keeps what it has read and written (0: none)");
   options.add_options()("delay",
                         po::value(&delay_ms)->default_value(delay_ms, "0.1")->value_name("MS"),
-                        "of a message, in milliseconds");
+                        "delay of a message in milliseconds");
   options.add_options()("limits", po::bool_switch(&limits),
                         "for each farm: what each stage takes, and what limits it");
   options.add_options()("paper", po::bool_switch(&paper),
                         "the paper's tables 1 or 2 and figure 4 (-o FILE: as SVG)");
   options.add_options()("off", po::value(&off)->default_value(off, "0.2")->value_name("SHARE"),
-                        "figure 4: how far the workers' speeds are off what they told");
+                        "figure 4: how far the workers' speeds are off those they reported");
   options.add_options()("output,o", po::value(&output)->value_name("FILE"),
                         "figure 4 as a picture, SVG");
 }

@@ -73,7 +73,7 @@ void TargetOptions::add(po::options_description& options) {
       "share of the input's triangles to keep, above 0 and up to 1, for example 0.01 or 1%")(
       "triangles", po::value(&run.triangles)->value_name("N"), "number of triangles to keep")(
       "error", po::value(&error)->value_name("LENGTH"),
-      "keep as few triangles as stay within this distance of the input, measured at sampled "
+      "keep as few triangles as possible within this distance of the input, measured at sampled "
       "points: in the mesh's unit, or as a share of the diagonal, for example 0.1%")(
       "certify", po::bool_switch(&run.certify),
       "with --error: prove the distance for every point of both surfaces; where that fails the "
@@ -82,28 +82,27 @@ void TargetOptions::add(po::options_description& options) {
       po::value(&allocation)->default_value(allocation)->value_name("threshold|uniform"),
       "threshold: the same cost threshold in all parts; uniform: the same ratio in all parts")(
       "finish", po::value(&finish)->default_value(finish)->value_name("auto|here|farm|boundary"),
-      "the last pass, to the exact count: here: the sink stitches all and may change everything; "
-      "farm: jobs do it piece by piece, and no process holds the whole result, where the other "
-      "options allow it; auto: farm for results too large for one process; boundary: the sink, "
-      "and only edges at seams")(
+      "the last pass, to the exact count: here: the sink stitches all parts and may change any "
+      "triangle; farm: jobs finish the result piece by piece, and no process holds all of it, if "
+      "the other options allow that; auto: farm for results too large for one process; boundary: "
+      "the sink, changing only edges at seams")(
       "composition",
       po::value(&composition)->default_value(composition)->value_name("auto|tree|sink"),
-      "how simplified parts are joined: tree: neighbours by jobs, a few at once; sink: all at once "
-      "by the sink; auto: tree if there are many more triangles than wanted")(
+      "how simplified parts are joined: tree: jobs join a few neighbours at a time; sink: the sink "
+      "joins all at once; auto: tree if there are many more triangles than wanted")(
       "fit", po::value(&fit)->default_value(fit)->value_name("auto|on|off"),
-      "at the end, move the vertices to where the surface is nearer to the input, by points of it: "
-      "auto: for up to 125,000 triangles; on: up to 2 million; not with --error, --crossings "
-      "avoid, "
+      "at the end, move the vertices so that the surface is nearer to points of the input: auto: "
+      "for up to 125,000 triangles; on: for up to 2 million; not with --error, --crossings avoid, "
       "--drop-components or --finish boundary")(
       "topology", po::value(&topology)->default_value(topology)->value_name("auto|keep|simplify"),
       "handles, holes and pieces: keep: never close or remove any; simplify: do so where it costs "
-      "least; auto: keep them as long as the target can be met at a fair error; with "
-      "--crossings avoid as simplify in the last pass")(
+      "least; auto: keep them as long as the target can be met at a fair error; with --crossings "
+      "avoid, auto acts as simplify in the last pass")(
       "crossings", po::value(&crossings)->default_value(crossings)->value_name("allow|avoid"),
-      "thin walls: avoid: what would make triangles cross others comes last, or never with "
-      "--error; "
-      "allow: nobody looks")("preserve-border", po::bool_switch(&run.lines.preserve_border),
-                             "leave the vertices on open borders as they are")(
+      "thin walls: avoid: collapses that make triangles cross come last, or never with --error; "
+      "allow: crossings are not checked")("preserve-border",
+                                          po::bool_switch(&run.lines.preserve_border),
+                                          "leave the vertices on open borders as they are")(
       "crease-angle", po::value(&run.lines.crease_angle)->value_name("DEGREES"),
       "keep edges that are sharper than this in place: their vertices merge only along them (0, "
       "the default: none; below 180)")(
@@ -116,22 +115,22 @@ void TargetOptions::add(po::options_description& options) {
 }
 
 void TargetOptions::add_texture_size(po::options_description& options) {
-  options.add_options()(
-      "texture-size", po::value(&run.texture_size)->value_name("PIXELS"),
-      "sides of a picture that is made by --uv bake, 64 to 16384 (0, the default: by the input's)");
+  options.add_options()("texture-size", po::value(&run.texture_size)->value_name("PIXELS"),
+                        "width and height of the picture that --uv bake makes, 64 to 16384 (0, the "
+                        "default: chosen from the input's pictures)");
 }
 
 void TargetOptions::add_attributes(po::options_description& options) {
   add_texture_size(options);
-  options.add_options()("uv", po::value(&uv)->default_value(uv)->value_name("auto|keep|bake|drop"),
-                        "the stage's textures: keep: their charts and pictures stay; bake: a new "
-                        "picture is made; drop: they are left out; auto: keep if the number of "
-                        "triangles can be met so, else bake");
+  options.add_options()(
+      "uv", po::value(&uv)->default_value(uv)->value_name("auto|keep|bake|drop"),
+      "the stage's textures: keep: keep their charts and pictures; bake: make a new picture; drop: "
+      "leave them out; auto: keep if the number of triangles can be met that way, else bake");
   options.add_options()(
       "attributes", po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
-      "which channels and labels of the stage the result has: auto: all that the output's format "
-      "has "
-      "a place for; LIST: these, as in red,green,blue ('colours' and 'normals' stand for theirs)");
+      "channels and labels of the stage to keep in the result: auto: all that the output format "
+      "can store; LIST: only these, as in red,green,blue ('colours' and 'normals' stand for all of "
+      "theirs)");
 }
 
 void TargetOptions::check() {
@@ -170,8 +169,8 @@ void TargetOptions::check_joining() {
   if (run.composition == Composition::tree &&
       (!error.empty() || run.allocation == Allocation::uniform || run.finish == Finish::boundary)) {
     throw UsageError(
-        "--composition tree goes by the one cost threshold: not with --error, --allocation uniform "
-        "or --finish boundary");
+        "--composition tree uses one cost threshold for all parts: it cannot be combined with "
+        "--error, --allocation uniform or --finish boundary");
   }
 }
 
@@ -199,7 +198,7 @@ void TargetOptions::check_surface() {
   }
   parse_weights(weight, run);
   const std::string why = run.fit == VertexFit::on ? why_not_fitted(run) : "";
-  if (!why.empty()) throw UsageError("--fit on does not go with " + why);
+  if (!why.empty()) throw UsageError("--fit on cannot be combined with " + why);
 }
 
 void TargetOptions::check_given(const GivenOptions& given) const {

@@ -59,11 +59,11 @@ void tell_textures(const Manifest& manifest, const RunOptions& run) {
   const std::uint64_t floor = texture_floor(manifest);
   const std::uint64_t target = asked_triangles(manifest, run);
   const std::string needed =
-      "to keep the charts of its textures about " + std::to_string(floor) + " triangles are needed";
+      "keeping the charts of its textures needs about " + std::to_string(floor) + " triangles";
   const TextureMode made = chosen_textures(manifest, run);
   if (made == TextureMode::keep && floor > target && !(run.error.value > 0)) {
     log_warning(manifest.input + ": " + needed + ", " + std::to_string(target) +
-                " are asked for; with --uv bake that number is met");
+                " are asked for; --uv bake meets the requested number");
   } else if (made == TextureMode::drop && chooses_uvs(run.channels) &&
              run.textures != TextureMode::drop) {
     log_warning(manifest.input + ": its texture coordinates are left out: " + needed +

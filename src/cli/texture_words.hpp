@@ -11,9 +11,9 @@ namespace meshfarm {
 
 inline constexpr const char* k_uv_words = "auto|keep|bake|colours|drop";
 inline constexpr const char* k_uv_help =
-    "textures: keep: their charts and pictures stay; bake: a new picture is made; colours: theirs "
-    "become those of the vertices; drop: they are left out; auto: keep if the number of triangles "
-    "can be met so, else bake, or colours where the output has no place for textures";
+    "textures: keep: keep their charts and pictures; bake: make a new picture; colours: turn them "
+    "into vertex colours; drop: leave them out; auto: keep if the number of triangles can be met "
+    "that way, else bake, or colours if the output format cannot store textures";
 
 /// --uv of commands that read a mesh: how to use its textures. Throws UsageError.
 Textures parse_uv(const std::string& text);

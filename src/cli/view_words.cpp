@@ -127,19 +127,19 @@ void ViewWords::add(po::options_description& options) {
                  "the mesh's axis that points up")(
       "projection",
       po::value(&projection_)->default_value(projection_)->value_name("perspective|orthographic"),
-      "perspective: what is far is smaller; orthographic: all is at one scale")(
+      "perspective: distant parts look smaller; orthographic: everything is at one scale")(
       "size", po::value(&size_)->default_value(size_)->value_name("WIDTHxHEIGHT"),
-      "of the picture, in pixels")(
+      "size of the picture in pixels")(
       "samples", po::value(&render.samples)->default_value(render.samples)->value_name("N"),
       "N x N samples make a pixel, 1 to 8: more make edges smoother, and take 8 bytes each")(
       "colour-by",
       po::value(&colour_by_)
           ->default_value(colour_by_)
           ->value_name("auto|none|colour|normal|piece|part|label|height|quality"),
-      "auto: the mesh's colours, if it has any; normal: which way triangles face; piece: what is "
-      "connected; part: what a stage is divided into; label: materials or other labels of "
-      "triangles; height: along the axis that is up; "
-      "quality: the first number of the vertices that is no colour or normal; or the name of one")(
+      "auto: the mesh's colours, if it has any; normal: which way triangles face; piece: connected "
+      "pieces; part: parts of a stage; label: materials or other labels of triangles; height: "
+      "along the axis that points up; quality: the first number of the vertices that is not a "
+      "colour or normal; or the name of such a number")(
       "range", po::value(&range_)->value_name("LOW:HIGH"),
       "with a number to colour by: values at the ends of the scale (default: the least and the "
       "greatest)")("wire", po::bool_switch(&render.wire), "draw the triangles' edges, too")(

@@ -10,10 +10,10 @@ namespace meshfarm {
 
 /// --weight: how much what a surface shows counts beside its shape, as in "colour=0.01,uv=0".
 inline constexpr const char* k_weight_help =
-    "how much these count beside the shape, for example colour=0.01: black for white is as bad as "
-    "a move of the surface by this share of the diagonal (default: 0.002); uv=0.2: to show what is "
-    "a length away on a texture is as bad as a move by this share of it (default: 0.1); 0: not at "
-    "all";
+    "how much colours and textures count beside the shape, for example colour=0.01: black for "
+    "white is as bad as moving the surface by this share of the diagonal (default: 0.002); uv=0.2: "
+    "shifting a texture by a length is as bad as moving the surface by this share of that length "
+    "(default: 0.1); 0: not at all";
 
 /// The shortest text that reads back as the same number.
 std::string shortest(double value);

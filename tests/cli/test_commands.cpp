@@ -397,7 +397,7 @@ TEST_CASE("a stage that holds a finished cut is not cut again") {
   SUBCASE("the same command takes it up") {
     const Ran ran = shell({"cut", cube, "--stage", stage, "--threads", "1"});
     CHECK(ran.code == 0);
-    CHECK(has(ran.err, "taken up"));
+    CHECK(has(ran.err, "already holds this cut"));
     CHECK(std::filesystem::last_write_time(stage + "/manifest") == made);
   }
   SUBCASE("other options are refused") {

@@ -188,7 +188,7 @@ TEST_CASE("help says where 0 is the default, and what range a value has") {
   CHECK(has(simplify, "(0,thedefault:ofabout300,000each)"));
   CHECK(has(simplify, "numberofparts(0,thedefault:"));
   CHECK(has(simplify, "threadsofthecut(0,thedefault:cores)"));
-  CHECK(has(simplify, "64to16384(0,thedefault:bytheinput's)"));
+  CHECK(has(simplify, "64to16384(0,thedefault:chosenfromtheinput'spictures)"));
   CHECK(has(simplify, "above0andupto1"));
   CHECK(has(simplify, "(0,thedefault:none;below180)"));
   CHECK(has(help_of("worker"), "(0,thedefault:as'meshfarmbenchmark'measured)"));

@@ -276,14 +276,15 @@ TEST_CASE("what becomes of textures is told before the work") {
   const Ran automatic = bench.simplify("a.obj", {"--triangles", "100"});
   CHECK(automatic.code == 0);
   CAPTURE(automatic.err);
-  CHECK(has(automatic.err, "a new texture is made: to keep the charts of its textures about"));
+  CHECK(
+      has(automatic.err, "a new texture is made: keeping the charts of its textures needs about"));
   CHECK(read_textured(bench.path("a.obj")).mesh.triangles.size() == 100);
   const Ran kept = bench.simplify("k.obj", {"--triangles", "100", "--uv", "keep"});
   CHECK(kept.code == 0);
-  CHECK(has(kept.err, "100 are asked for; with --uv bake that number is met"));
+  CHECK(has(kept.err, "100 are asked for; --uv bake meets the requested number"));
   const auto left = static_cast<double>(read_textured(bench.path("k.obj")).mesh.triangles.size());
   CAPTURE(left);
-  const double told = number_after(kept.err, "the charts of its textures about ");
+  const double told = number_after(kept.err, "the charts of its textures needs about ");
   CHECK(told == doctest::Approx(left).epsilon(0.1));
   const Ran none = bench.simplify("n.obj", {"--triangles", "400", "--uv", "drop"});
   CHECK(none.code == 0);
