@@ -68,7 +68,7 @@ class Doctor {
           "a server that is away for a while makes writes fail, and files end empty",
           "mount it with hard; runs refuse it unless they are told --allow-soft");
     } else {
-      say("hard mount", Verdict::good, "a server that is away for a while is waited for");
+      say("hard mount", Verdict::good, "writes wait for a server that is away for a while");
     }
     if (mount.value("proto").value_or("tcp").starts_with("udp")) {
       say("transport", Verdict::bad, "UDP, which can damage data at high rates",
@@ -102,7 +102,7 @@ class Doctor {
     if (version_3 && lookup == "all") {
       say("caches", Verdict::note,
           found + " on NFSv3: a name asked for too early can stay unseen for a minute",
-          "nothing for meshfarm, which asks for no name before it is told of it; vers=4.2 or "
+          "meshfarm needs no change: it asks for no name before it is told of it; vers=4.2 or "
           "lookupcache=positive spare other programs the wait");
     } else {
       say("caches", Verdict::good, found);
@@ -142,7 +142,7 @@ class Doctor {
           "keep the run's keys elsewhere with --key-file");
     }
     if (!probe.has_links) {
-      say("hard links", Verdict::note, "there are none here",
+      say("hard links", Verdict::note, "this file system does not support them",
           "start no two ventilators of a run at the same moment");
     }
   }

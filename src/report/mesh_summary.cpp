@@ -63,8 +63,7 @@ std::string render(const FileSummary& s, Format format) {
   if (s.file.labels) lines.add("labels", text_of(*s.file.labels));
   if (!s.file.textures.empty()) lines.add("textures", joined(s.file.textures));
   if (s.texture_floor > 0) {
-    lines.add("",
-              "to keep their charts about " + grouped(s.texture_floor) + " triangles are needed");
+    lines.add("", "keeping their charts needs about " + grouped(s.texture_floor) + " triangles");
   }
   if (!s.file.skipped.empty()) lines.add("not kept", joined(s.file.skipped));
   add_box(lines, s.box);

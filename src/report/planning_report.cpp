@@ -166,7 +166,7 @@ std::string render(const ScheduleComparison& comparison, Format format) {
   if (format == Format::json) return as_json(comparison).dump(2) + "\n";
   std::string text = "Figure 4: time over ideal, simulated on " + comparison.farm +
                      " workers; on the right their speeds are up to " +
-                     number(100 * comparison.off, "%.0f %%") + " off what they told\n" +
+                     number(100 * comparison.off, "%.0f %%") + " off those they reported\n" +
                      "   jobs     ideal   dynamic  of ideal    static  of ideal   |   dynamic  of "
                      "ideal    static  of ideal\n";
   const auto pair = [](double s, double ideal) {

@@ -72,7 +72,7 @@ LivePhase phase_of(const TraceState& state, double age_s, bool age_is_known) {
   LivePhase phase = phase_heard(state);
   if (age_is_known && age_s <= k_quiet_s) return phase;
   phase.words += age_is_known ? " when last heard of, " + duration_text(age_s) + " ago"
-                              : " when last heard of; when, cannot be told";
+                              : " when last heard of, at an unknown time";
   phase.works = false;
   return phase;
 }
@@ -138,8 +138,8 @@ StatusFacts facts_of(const StageStatus& status) {
   facts.cut_s = status.manifest.cut_seconds;
   facts.free_bytes = status.free_bytes;
   if (!status.trace) {
-    facts.phase =
-        status.manifest.cutting ? "none yet; the first is to cut" : "none yet; the cut is whole";
+    facts.phase = status.manifest.cutting ? "none yet; the first run will cut the mesh"
+                                          : "none yet; the cut is whole";
     return facts;
   }
   const Trace& trace = *status.trace;

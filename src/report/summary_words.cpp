@@ -130,7 +130,7 @@ std::string text_of(const LabelMeaning& labels) {
 
 std::string text_of(const TexturesMade& textures) {
   const std::string floor =
-      "to keep their charts about " + grouped(textures.floor) + " triangles are needed";
+      "keeping their charts needs about " + grouped(textures.floor) + " triangles";
   switch (textures.way) {
     case TexturesMade::Way::kept:
       return "kept: " + grouped(textures.pictures) +

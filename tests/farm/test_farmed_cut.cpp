@@ -208,5 +208,5 @@ TEST_CASE("a cut by the farm: what it cannot read or keep is one line, and no st
   const std::string stage = bench().planned();
   const Ran status = bench().meshfarm({"status", stage});
   CHECK(status.code == 0);
-  CHECK(status.out.find("none yet; the first is to cut") != std::string::npos);
+  CHECK(status.out.find("none yet; the first run will cut the mesh") != std::string::npos);
 }

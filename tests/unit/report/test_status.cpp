@@ -91,7 +91,8 @@ TEST_CASE("a phase has a name") {
   CHECK(status_has(phase([](auto& s) { s.trace->state->bad_hosts = {"bad"}; }), "bad hosts"));
   CHECK(status_has(phase([](auto& s) { s.now_unix_s = 1100; }),
                    "no word from the ventilator for 1 min"));
-  CHECK(status_has(phase([](auto& s) { s.now_unix_s.reset(); }), "when, cannot be told"));
+  CHECK(status_has(phase([](auto& s) { s.now_unix_s.reset(); }),
+                   "when last heard of, at an unknown time"));
   CHECK(status_has(phase([](auto& s) { s.now_unix_s = 1017; }),
                    "simplifying when last heard of, 7 s ago"));
   CHECK(status_has(phase([](auto& s) {
