@@ -184,7 +184,7 @@ class Assembler::Impl {
     summary.vertices = result.vertices();
     if (summary.max_error > 0) return summary;
     if (summary.triangles > summary.target) {
-      summary.why_not_exact = "the charts of its textures are kept, and need about so many";
+      summary.why_not_exact = "keeping the charts of its textures needs about that many";
     }
     if (summary.triangles < summary.target) {
       summary.why_not_exact = summary.triangles + 1 < summary.target

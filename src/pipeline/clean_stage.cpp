@@ -225,7 +225,8 @@ class Cleaning {
     }
     for (const auto& [run, state] : runs_) {
       if (state.complete) continue;
-      report_.kept.push_back("what run " + to_hex(run) + " has, which goes on or can be taken up");
+      report_.kept.push_back("files of run " + to_hex(run) +
+                             ", which is running or can be continued");
     }
   }
 

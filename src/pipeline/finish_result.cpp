@@ -327,7 +327,7 @@ class ResultFinish {
     const std::uint64_t after = result.triangles.size();
     if (after == summary_.target) return {};
     if (goal_ > summary_.target) {
-      return "the charts of its textures are kept, and need about so many";
+      return "keeping the charts of its textures needs about that many";
     }
     if (summary_.target > before) return why_no_more();
     const Topology topology = measure_topology(result);

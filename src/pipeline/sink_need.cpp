@@ -86,7 +86,7 @@ std::string check_sink_need(const Manifest& manifest, const RunOptions& options,
   if (!free_bytes || need->bytes <= *free_bytes) return {};
   return "the sink is going to take about " + std::to_string(need->bytes >> 20) + " MiB, " +
          std::to_string(*free_bytes >> 20) +
-         " are free here: run it where there is more memory, or ask for fewer triangles";
+         " MiB are free here: run it where there is more memory, or ask for fewer triangles";
 }
 
 }  // namespace meshfarm
