@@ -68,8 +68,8 @@ RunKeys read_keys(const std::filesystem::path& path) {
   if (!S_ISREG(status.st_mode)) throw DataError(path.string() + ": not a file");
   if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
     throw DataError(path.string() +
-                    ": others may read these keys; 'chmod 600' it, or where the file system keeps "
-                    "no such rights, name a place that does with --key-file");
+                    ": others may read these keys; run 'chmod 600' on it, or if the file system "
+                    "keeps no such permissions, name a file on one that does with --key-file");
   }
   if (static_cast<std::uint64_t>(status.st_size) > k_max_file_bytes) {
     throw DataError(path.string() + ": too long for a key file");
