@@ -166,8 +166,8 @@ Stage Stage::open(const std::filesystem::path& root, const ReadPatience& patienc
     }
     if (type_of(stage.path(ManifestName{})) == std::filesystem::file_type::not_found) {
       throw DataError(root.string() +
-                      ": holds no manifest, so it is no stage or its cut did not end; "
-                      "make it with 'meshfarm cut'");
+                      ": holds no manifest: it is not a stage, or its cut did not finish; make it "
+                      "with 'meshfarm cut'");
     }
   });
   return stage;
