@@ -59,7 +59,7 @@ TEST_CASE("what a sink can never hold is refused, what does not fit here is told
         std::string::npos);
   CHECK(check_sink_need(manifest, here(0.01), std::nullopt).empty());
   CHECK(check_sink_need(manifest, here(0.01), std::uint64_t{64} << 30).empty());
-  CHECK(check_sink_need(manifest, here(0.01), std::uint64_t{4} << 30).find("4096 are free") !=
+  CHECK(check_sink_need(manifest, here(0.01), std::uint64_t{4} << 30).find("4096 MiB are free") !=
         std::string::npos);
   CHECK(check_sink_need(manifest, {.error = {0.1, true}}, 1).empty());
   CHECK(check_sink_need(manifest, {.ratio = 0.5}, 1).empty());  // no process holds it
