@@ -8,9 +8,9 @@
 
 namespace meshfarm {
 
-// Signs of determinants, exact if the coordinates' differences are at most 1e100 and at least 1e-90
-// times that. Computed as usual where rounding cannot change the sign, otherwise exactly (Shewchuk
-// 1997).
+// Signs of determinants, exact if no difference of coordinates is above 1e100, or above 0 and below
+// 1e-90 times the greatest. Computed as usual where rounding cannot change the sign, otherwise
+// exactly (Shewchuk 1997).
 
 /// A coordinate plane: the axes that are kept of a point in space.
 struct Axes {

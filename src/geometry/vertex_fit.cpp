@@ -253,7 +253,7 @@ class Fitter {
     }
   }
 
-  /// Applies the whole move, or half or a quarter of it, as much as the triangles tolerate.
+  /// Applies the moves: each as a whole or halved as often as its triangles need it.
   std::uint64_t apply() {
     std::vector<Vec3> moved(mesh_.positions.size());
     std::vector<double> share(moved.size(), 1);

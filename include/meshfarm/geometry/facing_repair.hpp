@@ -42,8 +42,9 @@ class FacingRepair {
   FacingRepair(Mesh& mesh, const FacingRepairOptions& options);
   ~FacingRepair();
 
-  /// Repairs those of these triangles that need it. `original`: the part of the original within
-  /// reach of all vertices of these triangles, with finite coordinates; may differ between calls.
+  /// Repairs those of these triangles that need it. `original`: what of the original is within
+  /// reach of these triangles and of all others at their vertices, with finite coordinates. It may
+  /// differ between calls.
   FacingMended mend(std::span<const std::uint32_t> triangles, const Mesh& original);
 
  private:

@@ -101,18 +101,18 @@ struct SimplifyOptions {
 /// How far to go: the first limit that is met counts.
 struct SimplifyGoal {
   /// Stop at this many triangles. If another goal follows, one more may be left, as a single
-  /// triangle can go only at an open border. For the last goal, up to 0.1 % fewer may be left (up
-  /// to 2 % below 1,000) where the last collapses would otherwise cost far more, or nothing else
+  /// triangle can go only at an open border. For the last goal, up to 0.1 % fewer may be left (2 %
+  /// for goals below 1,000) where the last collapses would otherwise cost far more, or nothing else
   /// can go.
   std::uint64_t triangles = 0;
   /// Collapse no edge that costs more. A cost is an area times a squared distance: the sum, over
   /// the triangles round the edge just before the collapse, of area x squared distance of the new
-  /// vertex to their planes. Each crease edge adds two planes perpendicular to its triangles; each
-  /// edge of an open border adds one, at a tenth of a crease's weight except at corners. Area that
-  /// is lost or gained, tips, slivers, ends of ribbons and changes of the topology cost more than
-  /// the planes tell: docs/kernel.md has the terms. The cost depends only on the mesh near the
-  /// edge, and on the distance to the rest for what is removed as a whole, so the costs of
-  /// different parts can be compared.
+  /// vertex to their planes. Each crease edge adds two planes perpendicular to its triangles, each
+  /// as heavy as three squares on the edge; each edge of an open border adds one, at a tenth of
+  /// that weight except at corners. Area that is lost or gained, tips, slivers, ends of ribbons and
+  /// changes of the topology cost more than the planes tell: docs/kernel.md has the terms. The cost
+  /// depends only on the mesh near the edge, and on the distance to the rest for what is removed as
+  /// a whole, so the costs of different parts can be compared.
   double max_cost = std::numeric_limits<double>::infinity();
   /// About how many triangles will be left when all following goals are met; 0: none follows. The
   /// farther away that is, the less care a collapse needs.
@@ -180,8 +180,8 @@ class Simplifier {
   std::uint64_t refused_by_topology() const;
   /// Whether there were more such refusals than collapses.
   bool is_hampered_by_topology() const;
-  /// Whether at least 1 % of the edges that the last reduce() tried were refused to keep the
-  /// topology, or edges already collapse in order, which is_hampered_by_topology() covers.
+  /// Whether the last reduce() refused more than one edge per 100 collapses to keep the topology,
+  /// or edges already collapse in order, which is_hampered_by_topology() covers.
   bool is_slowed_by_topology() const;
   std::uint64_t dropped_degenerate() const;
   std::uint64_t dropped_duplicate() const;

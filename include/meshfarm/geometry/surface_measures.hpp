@@ -20,7 +20,7 @@ struct ShapeMeasures {
   /// The first percentile of the triangles' smallest angles, to a thousandth of a degree. Triangles
   /// with coincident corners are left out; others without area have angle 0.
   double smallest_angle_p1 = 0;
-  double share_below_5 = 0;  // of the triangles that have an angle below 5 degrees
+  double share_below_5 = 0;  // of the triangles: those with an angle below 5 degrees
 };
 
 /// Measures a surface that is added piece by piece. The pieces affect the figures only by rounding,
@@ -52,11 +52,11 @@ inline constexpr double k_feature_degrees = 40;
 
 struct EdgeLengths {
   double border = 0;   // of edges with one triangle
-  double feature = 0;  // of edges with two triangles that are features
+  double feature = 0;  // of edges with two triangles, if they are features
 };
 
-/// Vertices are welded as in a run, and triangles with two corners left out. The result does not
-/// depend on the threads (0: one per core). Memory: about 45 bytes per triangle.
+/// Vertices are welded as in a run; triangles that then have only two corners are left out. The
+/// result does not depend on the threads (0: one per core). Memory: about 45 bytes per triangle.
 EdgeLengths measure_edge_lengths(const Mesh& mesh, unsigned threads);
 
 }  // namespace meshfarm

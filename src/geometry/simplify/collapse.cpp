@@ -326,8 +326,8 @@ Collapse CollapseJudge::into_line(Vec3 position, std::uint32_t shared, double ma
   return made.triangles > 0 ? made : at_position(position, shared, max_cost, Turn::sliver);
 }
 
-/// Whether some vertex around the edge is not the end of a ribbon. On a card without other
-/// vertices, one of the ends has to move.
+/// Whether some vertex around the edge is neither the end of a ribbon nor merged from one. On a
+/// card without such vertices, one of the ends has to move.
 bool CollapseJudge::is_longer_than_ends() const {
   const auto has_other = [&](const Ring& ring) {
     for (std::uint32_t i = 0; i < ring.size; ++i) {

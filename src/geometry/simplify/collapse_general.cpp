@@ -17,8 +17,8 @@ namespace {
 /// an edge's length, by an unknown distance. From 1 to 30, the error changes by a few per cent.
 constexpr double k_loss_of_change = 2;
 /// Cost of losing a piece, per area times squared distance from the rest. Other costs are sums over
-/// whole triangles although only one corner moves, so they are a few times greater than for the
-/// same error here. From 6 to 15 the results are alike; with 1 or 40, scans of many pieces lose
+/// whole triangles of which only one corner moves: they are a few times as great as the area times
+/// the squared error. From 6 to 15 the results are alike; with 1 or 40, scans of many pieces lose
 /// 10 %.
 constexpr double k_loss_of_piece = 10;
 /// Cost factor of lost area in a block of cells: walls inside it lose no area, and others stay

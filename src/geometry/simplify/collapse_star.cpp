@@ -12,8 +12,8 @@ constexpr double k_cos_85_squared = 0.0076;
 // Minimum squared sine of the angle at the new vertex: angles near 0 or 180 degrees are as good as
 // no area.
 constexpr double k_least_sine_squared = 1e-6;
-// Triangles that are this thin already may become four times as thin, down to this limit, which
-// also applies to new slivers.
+// Triangles that are nearly as thin as that already may become four times as thin, down to this,
+// and new slivers may be as thin as this.
 constexpr double k_least_of_slivers = 1e-12;
 // If the normals add up to less than this share of the total area, the star faces all ways, as on a
 // pin or a thin tube. Without a limit, nearly twice as many triangles of a dragon cross; with 0.3
@@ -33,8 +33,8 @@ constexpr double k_cost_of_sliver = 1e-5;
 // less and 1 % more the other way.
 constexpr double k_of_protruding = 3;
 
-/// The squared sine of the smallest angle of the triangle x, p, q with the normal cross(p - x, q -
-/// x). 0 if it has no area.
+/// The squared sine of the smallest angle of the triangle x, p, q; 0 if it has no area.
+/// `squared_normal`: the squared length of cross(p - x, q - x).
 double squared_least_sine(Vec3 x, Vec3 p, Vec3 q, double squared_normal) {
   if (!(squared_normal > 0)) return 0;
   const double a = squared_length(p - x);
@@ -65,8 +65,8 @@ void CollapseStar::sum_planes(EdgeQuadric& quadric) const {
   quadric.twice_area = sum(s.twice_area);
 }
 
-/// A sliver of the input may stay one, even if its angle at the old end was wide, as every sliver
-/// has a wide angle: otherwise nothing around it could ever collapse. A needle whose tip is at x
+/// A sliver of the input may stay one: otherwise nothing around it could ever collapse. Its angle
+/// at the old end may have been wide, as every sliver has a wide angle. A needle whose tip is at x
 /// and that stands straight on its short side has a normal as good as any.
 bool CollapseStar::is_acceptable(const Two& two, int lane, Vec3 x, double cos_squared) const {
   const auto at = [&](const Vec3Pair& a) { return Vec3{a.x[lane], a.y[lane], a.z[lane]}; };

@@ -58,7 +58,7 @@ class PlaceCells {
         found = i;
       }
     };
-    // Points in a ring of cells are at least as far as the cells within that ring are wide.
+    // Points in the n-th ring of cells are at least n - 1 cells away.
     for (std::int64_t ring = 0;; ++ring) {
       const double inner = static_cast<double>(ring - 1) * cell_;
       if (ring > 0 && inner * inner > best) return found;

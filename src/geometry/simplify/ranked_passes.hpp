@@ -55,8 +55,8 @@ class RankedPasses {
   const SurfaceBound* bound_;
   std::vector<float> drifts_;  // of each vertex, where there is a bound
   EdgeRanking ranking_;
-  // Ranks by lower bounds, so that flat regions go before nearly flat ones. Where few of those are
-  // left, most edges that rank low cost more and are refused.
+  // Ranks by lower bounds, so that flat regions go before nearly flat ones. Where few flat
+  // ones are left, most edges that rank low cost more and are refused.
   bool ranks_by_bounds_ = true;
   bool ranks_finely_ = false;                   // most edges that rank low are flat but for noise
   std::uint64_t all_collapses_ = 0;             // of the last reduce()

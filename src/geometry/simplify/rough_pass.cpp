@@ -46,7 +46,7 @@ constexpr double k_most_dearer = 2;
 // The same ratio per vertex, which at most a quarter of them may exceed: expensive edges may hide
 // others. On a circuit board, whose pieces are much more expensive than the rest, all shortest
 // edges together cost 1.1 times as much as the cheapest, but a quarter of them 140 times or more.
-// On scans that is 2 to 7.
+// On scans, a quarter cost 2 to 7 times or more.
 constexpr double k_most_dearer_of_quarter = 16;
 
 /// The costs of merging a vertex along its shortest edge, and along its cheapest.

@@ -253,7 +253,8 @@ bool CollapseQueue::must_not_cross(const QueuedEdge& queued, const Collapse& col
   return true;
 }
 
-/// A refused edge is judged again when one of its ends has moved, not when something around it has.
+/// Whether the bound forbids the collapse. Such an edge is judged again when one of its ends has
+/// moved, not when something around it has.
 bool CollapseQueue::is_guarded(std::uint32_t a, std::uint32_t b, const Collapse& collapse) {
   if (guard_ == nullptr) return false;
   return !guard_->allows(planned(a, b, collapse));

@@ -72,7 +72,7 @@ void EdgeRanking::refine() {
   for (std::uint32_t v = 0; v < fine_.size(); ++v) refresh(v);
 }
 
-/// The appearance quadric of the vertex's star, about the vertex, in which all its triangles agree.
+/// The appearance quadric of the vertex's star, about the vertex, where all its triangles agree.
 Quadric EdgeRanking::appearance_at(std::uint32_t vertex) {
   const std::span<const Corner> fan = input_.adjacency->at(vertex);
   if (fan.size() > k_max_star) return {};

@@ -113,7 +113,7 @@ class GraphBuilder {
     return chart_numbers_[chart_of_.find(triangle)];
   }
 
-  /// Counts a vertex for each chart as often as the chart's rim visits it.
+  /// Counts a vertex for each of its charts: once inside, on the rim as often as the rim visits it.
   void count_sides(std::uint32_t vertex) {
     const CornerFan fan = fan_at(vertex);
     const std::size_t size = fan.corners.size();
