@@ -13,7 +13,7 @@ namespace {
 
 /// Points of the surface that is measured to: they tell where to look first.
 constexpr std::uint64_t k_hints = 100'000;
-/// The first pass looks this many times the vertex spacing far.
+/// The first pass looks as far as this multiple of the vertex spacing.
 constexpr double k_near_in_spacings = 4;
 
 SurfaceSamples sampled(const DividedSurface& surface, std::uint64_t samples) {

@@ -169,7 +169,7 @@ class DividedSurface::Impl {
   VertexSurvey survey_;
   Sorting sorting_;
   Divided welded_;
-  std::optional<Divided> as_it_is_;  // null if the same as welded_
+  std::optional<Divided> as_it_is_;  // empty if the same as welded_
   std::uint64_t triangles_ = 0;
 };
 

@@ -37,8 +37,8 @@ struct Seams {
 
 /// Divides a mesh in bounded memory while it is scanned. The caller assigns each vertex to a share.
 /// A triangle goes to the share of its vertices, or to the boundary if they are in several shares.
-/// The map from a vertex to its share and place is a mapped scratch file, of which few pages stay
-/// mapped if the input has locality, or memory as well.
+/// The map from a vertex to its share and place is in memory if it fits, else a mapped scratch
+/// file, of which few pages stay mapped if the input has locality.
 class MeshShares {
  public:
   /// Which of the boundary triangles will be asked for: seam() only, or region() too.
@@ -48,7 +48,7 @@ class MeshShares {
     std::uint32_t shares = 0;
     std::uint64_t vertices = 0;  // exactly this many are added
     PositionType positions = PositionType::float32;
-    std::uint64_t memory_bytes = 0;  // for the shares; the rest goes to scratch files
+    std::uint64_t memory_bytes = 0;  // for map and shares; the rest goes to scratch files
     SeamsFor seams = SeamsFor::shares_and_regions;
     bool appearances = false;     // whether vertices have any
     ColumnSet columns = {};       // of the triangles

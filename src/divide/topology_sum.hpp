@@ -32,7 +32,7 @@ class TopologySum {
   TopologySum(const MeshShares& shares, const std::filesystem::path& folder, std::uint32_t slabs)
       : shares_(shares), vertices_(folder, slabs), pieces_(slabs) {}
 
-  /// Call this from several threads, for each slab once.
+  /// May be called from several threads; once for each slab.
   void add(std::uint32_t slab, const MeasuredSlab& measured, const BoundaryNumbers& numbers);
   /// Call this once, after all slabs.
   Topology finish();

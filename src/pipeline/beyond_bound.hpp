@@ -14,8 +14,8 @@ namespace meshfarm {
 /// Simplification checks only points. If the whole surface turns out to exceed the bound by this
 /// factor somewhere, everything near there stays unchanged, and simplification begins again; at
 /// most k_bounded_tries times in all, and the last result is not checked. Parts and seams are given
-/// shares of the run's bound (k_bound_share_of_parts, k_bound_share), and these factors make about
-/// 1.08 of them.
+/// shares of the run's bound (k_bound_share_of_parts, k_bound_share); times its share, each factor
+/// is about 1.08 of the run's bound.
 inline constexpr double k_most_beyond_of_part = 1.2;
 inline constexpr double k_most_beyond_of_seam = 1.17;
 inline constexpr int k_bounded_tries = 6;

@@ -28,8 +28,8 @@ std::int32_t level_reached(double cost, double unit) {
   return level_cost(level, unit) > cost ? level - 1 : level;
 }
 
-/// If at most this share of a part's triangles is lost, these are kept unchanged, and the rest is
-/// simplified again as far as before; at most k_most_tries times.
+/// If less than this share of a part's triangles is lost, these are kept unchanged, and the rest is
+/// simplified again as far as before; at most k_most_tries times per share of the bound.
 constexpr double k_little_lost = 0.002;
 constexpr std::size_t k_most_tries = 4;
 
@@ -56,8 +56,8 @@ class PartSimplifier {
   }
 
  private:
-  /// Where the result goes too far, the part stays unchanged; if that would be a large area, the
-  /// part is simplified to a share of the bound instead.
+  /// Where the result goes too far, the part stays unchanged there; if that would lock too many
+  /// vertices, the part is simplified to a share of the bound instead.
   Simplifier measured(const Part& part) const {
     constexpr double k_little = 0.3;  // vertices, for each triangle of the result
     constexpr double k_less = 0.85;

@@ -19,8 +19,8 @@ constexpr double k_more_headroom = 8;
 constexpr double k_fair_share = 0.1;
 constexpr double k_fair_excess = 2;
 /// At most this many collapses per triangle may be refused by the time the count is reached,
-/// extrapolated from the chosen level. In the cases where keeping the topology turned out to cost
-/// more than is fair, it was 1.2 to 5 in six of seven; in the others up to 0.9.
+/// extrapolated from the chosen level. Where keeping the topology turned out to cost more than
+/// is fair, it was 1.2 to 5 in six of seven cases; where it did not, up to 0.9.
 constexpr double k_fair_refused = 1.1;
 /// Refusals alone do not decide. At the same level, which is the same cost of the last collapse,
 /// parts that keep their topology may have this many times the triangles of those that do not:
@@ -181,7 +181,7 @@ std::vector<std::uint32_t> ClimbStage::keep_after_all() {
 
 /// Whether parts that keep their topology could not follow the others to the common level, or all
 /// parts together miss the count by far, or not even their maximum reduction would reach the
-/// target. The finish finds out where the topology is kept at too high a cost before that.
+/// target. If the topology is kept at too high a cost without any of this, the finish finds out.
 bool ClimbStage::is_held_back() const {
   const auto all = static_cast<double>(results_.free_triangles(results_.level));
   double held = 0;

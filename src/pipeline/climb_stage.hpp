@@ -57,7 +57,7 @@ class ClimbStage {
   std::uint32_t jobs_asked_ = 0;
   std::vector<std::uint32_t> climbed_;  // parts that have a ladder
   std::vector<ChosenRung> kept_;
-  std::optional<PartResults> kept_ladders_;  // until they are compared with ladders that gave it up
+  std::optional<PartResults> kept_ladders_;  // until compared with those that gave up the topology
   bool keeps_after_all_ = false;             // the outcome of that comparison
 };
 

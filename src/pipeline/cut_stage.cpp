@@ -281,7 +281,7 @@ Manifest as_if_cut(Manifest manifest) {
   const std::uint32_t parts = manifest.cutting->parts;
   manifest.cutting.reset();
   PartEntry part;
-  constexpr std::uint64_t k_tenths = 12;  // the largest part relative to the average
+  constexpr std::uint64_t k_tenths = 12;  // the largest part, in tenths of the average
   part.triangles = k_tenths * manifest.input_triangles / parts / 10 + 1;
   part.vertices = part.triangles / 2 + 1;
   part.shared_triangles = part.triangles;

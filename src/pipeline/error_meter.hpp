@@ -29,7 +29,7 @@ struct ErrorPoints {
   std::uint64_t peaks = 10'000;              // result vertices farthest from their neighbours
   std::uint64_t sides = 10'000;              // of the result: midpoints of longest sides, at most
   std::uint64_t input_vertices = 1'000'000;  // at most
-  std::uint64_t input_sides = 30'000;        // midpoints count if there are no more vertices
+  std::uint64_t input_sides = 30'000;        // midpoints count up to this many vertices
 };
 
 /// For a bound on the error, which is a bound on the maximum.

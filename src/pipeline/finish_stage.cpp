@@ -249,8 +249,8 @@ void FinishStage::take_measured(const JobGraph& graph, PieceOfResult& piece, std
   add_share(decode_piece_error(output.summary, "summary of " + output.file.name), piece.error);
 }
 
-/// Ranges of neighbouring parts of the input. The first one is empty: it stands for what lies
-/// between the parts of a piece, or between the pieces.
+/// Ranges of neighbouring parts of the input. Unless the piece is a single part, the first range is
+/// empty: it stands for what lies between the parts of a piece, or between the pieces.
 std::vector<PartRange> FinishStage::ranges_of(const PieceOfResult& piece) const {
   std::vector<PartRange> ranges;
   if (piece.parts != 1) ranges.push_back({piece.first_part, piece.first_part});

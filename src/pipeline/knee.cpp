@@ -13,7 +13,7 @@ constexpr double k_step = 1.25;
 constexpr int k_steps = 20;
 /// With more triangles than this, keeping them would take too much memory.
 constexpr std::uint64_t k_large = 1'000'000;
-/// A knee is reported if the error falls by more than this factor.
+/// A knee is reported only if the error falls by more than this factor.
 constexpr double k_least_gain = 3;
 /// An error below this fraction of the diagonal is not visible.
 constexpr double k_visible = 1e-4;

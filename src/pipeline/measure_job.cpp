@@ -21,7 +21,7 @@
 namespace meshfarm {
 namespace {
 
-/// How far the first pass looks, as in error_meter.cpp. Only the time depends on it.
+/// How far the first pass looks, limited as in error_meter.cpp. Only the time depends on it.
 constexpr double k_usual_in_rms = 4;
 constexpr double k_usual_in_spacings = 4;
 

@@ -8,7 +8,7 @@
 namespace meshfarm {
 namespace {
 
-/// A piece that reached its quota may lose at most this fraction of it again.
+/// From a piece that reached its quota, at most the quota divided by this is taken again.
 constexpr std::uint64_t k_least_kept = 2;  // half
 
 std::uint64_t sum_at(std::span<const PieceWeight> pieces, std::int32_t step) {

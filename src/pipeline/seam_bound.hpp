@@ -31,10 +31,10 @@ struct BoundedFinishOptions {
 struct SeamMesh {
   Mesh mesh;
   std::uint32_t locked = 0;  // the first vertices; they neither move nor go
-  /// The first of these stay even if no triangle uses them.
+  /// How many of these, from the first on, stay even if no triangle uses them.
   std::uint32_t kept = 0;
-  /// Triangles that only have vertices from this range, which are locked, may be changed by others
-  /// meanwhile: they prove nothing.
+  /// Triangles with vertices only from first_unsure up to end_unsure, which are locked, may be
+  /// changed by others meanwhile: they prove nothing.
   std::uint32_t first_unsure = 0;
   std::uint32_t end_unsure = 0;
 };

@@ -61,8 +61,8 @@ std::uint32_t FinishStage::groups_of_seams() const {
       std::clamp<std::uint64_t>(groups, 1, std::min(pieces, by_error() ? pieces : most)));
 }
 
-/// The number of the input's triangles around the seams, estimated from the shares of the pieces
-/// that were left there.
+/// The number of the input's triangles around the seams, estimated from the share of each piece
+/// that went to the surroundings.
 std::uint64_t FinishStage::input_round_seams() const {
   double triangles = static_cast<double>(manifest_.boundary_triangles);
   for (const PieceOfResult& each : made_.pieces) {

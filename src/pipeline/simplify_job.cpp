@@ -323,7 +323,7 @@ void set_share(SimplifyParameters& parameters, const ShareRule& rule,
     end = rule.end * kept;
     if (start > 0.7 * triangles) {
       start = triangles;
-      end = std::min(end, kept);  // the first rung after the whole part is unpredictable
+      end = std::min(end, kept);  // the rung after the unchanged part is unpredictable
     }
   }
   parameters.share_triangles = static_cast<std::uint64_t>(share);

@@ -58,7 +58,7 @@ std::uint32_t Stitcher::piece_of(const BoundaryCorner& corner) const {
 }
 
 void Stitcher::make_room(std::span<const BoundaryTriangle> boundary) {
-  std::vector<std::uint32_t> locals(piece_of_part_.size(), 0);  // by part: its end
+  std::vector<std::uint32_t> locals(piece_of_part_.size(), 0);  // by part: the last, plus 1
   for (const BoundaryTriangle& t : boundary) {
     for (const BoundaryCorner& corner : t) {
       if (piece_of(corner) == k_elsewhere) continue;

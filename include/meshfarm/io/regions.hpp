@@ -26,8 +26,8 @@ class Regions {
   std::uint32_t count() const { return parts_ > 2 ? parts_ - 1 : 1; }
   /// The smallest region that holds both parts.
   std::uint32_t of(std::uint32_t a, std::uint32_t b) const;
-  /// The regions that hold some of these parts and others, too, and those within their range that
-  /// lie in none of the pieces. The pieces are given in order; the regions are ascending.
+  /// The regions that overlap the range from the first of these pieces to the last, and that do not
+  /// lie within a single piece. Pieces are given in order; the regions are ascending.
   std::vector<std::uint32_t> touched_by(const std::vector<PartRange>& pieces) const;
 
  private:

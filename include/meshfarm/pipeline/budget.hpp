@@ -14,10 +14,10 @@
 
 namespace meshfarm {
 
-/// Parts and finish keep to this share of a bound on the error: between the points that they check,
-/// a surface may be a little farther away.
+/// The finish keeps to this share of a bound on the error: between the points that it checks, a
+/// surface may be a little farther away.
 inline constexpr double k_bound_share = 0.92;
-/// Parts keep to this share as well, because the finish checks other points of them.
+/// Parts keep to this smaller share, as the finish also checks other points of them.
 inline constexpr double k_bound_share_of_parts = 0.9;
 
 /// The accepted result of a part or of composed streams, and the rung of it to stitch.

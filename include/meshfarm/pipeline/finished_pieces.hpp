@@ -13,8 +13,8 @@
 namespace meshfarm {
 
 /// Why only the sink can finish a run: options that jobs do not support, or a result that the sink
-/// holds well. Empty: jobs do the finish. If a bound on the error decides how much is left, the
-/// sink may still turn out to finish a large input well.
+/// holds well. Empty: jobs do the finish. If a bound on the error decides how much is left, even
+/// a large input may leave a result that the sink holds well.
 std::string why_finish_here(const Manifest& manifest, const RunOptions& options);
 /// Whether the sink may finish a result under a bound itself, and holds this many triangles well.
 bool holds_well(const RunOptions& options, std::uint64_t triangles);

@@ -83,7 +83,7 @@ struct PlannedStage {
   double takes_s = 0;    // from the end of the previous stage to its own
   double ideal_s = 0;    // its work divided by the sum of all speeds
   double longest_s = 0;  // of its longest job, on a worker of speed 1
-  double storage_s = 0;  // of the server's link
+  double storage_s = 0;  // of transfers over the server's link
 };
 /// How long each stage takes, in order. Runs the simulation once per stage.
 std::vector<PlannedStage> simulate_stages(std::span<const PlannedJob> jobs,

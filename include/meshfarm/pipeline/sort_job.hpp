@@ -37,7 +37,7 @@ std::string encode_summary(const SortSummary& summary);
 SortSummary decode_sort_summary(std::string_view bytes, std::string_view what);
 
 /// Sorts a slab (the job's input) to a stream (Xiong et al. 2008, 4.1), to the same bytes that the
-/// cut publishes when it sorts itself.
+/// cut publishes when it does the sorting.
 JobOutput sort_to_stream(const Job& job, const JobContext& context);
 
 /// Takes a sample of a long stream (the job's input): a part, with the same bytes that the cut

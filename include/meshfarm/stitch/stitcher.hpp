@@ -66,7 +66,7 @@ class Stitcher {
   std::uint32_t first_part_;
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t> piece_of_part_;  // from first_part_ on
-  std::vector<std::size_t> first_corner_;     // by part, from first_part_ on
+  std::vector<std::size_t> first_corner_;     // by part, from first_part_ on: its first place
   /// By place, for pieces of several parts: the number of the boundary vertex in the piece. For a
   /// single part it is the local index.
   std::vector<std::uint32_t> number_;
