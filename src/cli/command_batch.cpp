@@ -107,7 +107,7 @@ class BatchCommand : public Command {
   }
   void check_given(const GivenOptions& given) const override {
     cut_.check_given(given, false);
-    // The option applies to all files: it need not apply to each.
+    // One option for all files: it is enough that it has an effect on one of them.
     const auto of_packing = [](const std::string& input) {
       return has_packing(output_name(input));
     };

@@ -15,7 +15,7 @@ namespace meshfarm {
 
 /// What a stage was cut from, and how: a repeated command recognises its own stage by this.
 struct CutRecord {
-  std::uint64_t size = 0;       // the input's modification time
+  std::uint64_t size = 0;       // of the input, in bytes
   std::int64_t changed_ns = 0;  // when the input was written last
   std::uint64_t sum = 0;        // of the input's head and tail
   std::string options;          // of the cut, those that affect its output

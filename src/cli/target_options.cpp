@@ -55,7 +55,7 @@ double parse_ratio(const std::string& text) {
   return number->value;
 }
 
-/// Omitted components are far from the remaining surface, so no bound can be proven.
+/// Components that are left out are far from the remaining surface: no bound holds for them.
 void check_certify(const RunOptions& run) {
   if (!run.certify) return;
   if (!(run.error.value > 0)) throw UsageError("--certify proves a bound: it needs --error");

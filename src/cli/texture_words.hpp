@@ -23,8 +23,8 @@ TextureMode parse_texture_mode(const std::string& text);
 
 /// --uv when a mesh is cut and the result written by one command.
 struct TextureWords {
-  std::string cut;  // for parse_texture_mode()
-  std::string run;  // as parse_texture_mode() does
+  std::string cut;  // for parse_uv()
+  std::string run;  // for parse_texture_mode()
 };
 /// Depends on what the output can store. Throws UsageError for textures that it cannot store.
 TextureWords texture_words_for(const std::string& output, const std::string& uv);

@@ -198,8 +198,8 @@ void Dispatcher::look_at_doubts() {
   if (!unsettled.empty()) look_for_end();
 }
 
-/// The job was done: a worker that could not read its input is to blame itself, unless another had
-/// trouble at about the same time.
+/// The job was done: a host that could not read its input is blamed if a worker of another host
+/// read it without trouble at about the same time.
 void Dispatcher::blame_who_could_not_read(const Accept& accept) {
   const auto found = unread_on_.find(accept.key);
   const auto worker = workers_.find(accept.worker);

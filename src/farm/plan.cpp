@@ -25,7 +25,8 @@ JobState first_state(const Job& job) {
 }  // namespace
 
 bool Plan::ReadyJob::operator<(const ReadyJob& other) const {
-  // The longest path first, so that the last jobs are short; then in the order of requests.
+  // The longest path first, so that the last jobs are short; then in the order in which they
+  // became wanted.
   if (path != other.path) return path > other.path;
   return order < other.order;
 }

@@ -298,8 +298,8 @@ void Scheduler::find_home(Plan& plan, std::uint64_t extent, const Host& host) co
   plan.set_home(extent, host.number);
 }
 
-/// The worker to give a job to that this worker could do: one on the job's home host that is about
-/// as fast and has no more to do before it.
+/// Chooses who gets a job that this worker could do: a worker on the job's home host, if it is
+/// about as fast and has no more to do before the job; else this one.
 WorkerId Scheduler::at_home(WorkerId id, const IssuedJob& job, const Plan& plan,
                             FarmTime now) const {
   const Member& first = crew_.at(id);

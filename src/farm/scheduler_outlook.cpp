@@ -73,8 +73,8 @@ void Scheduler::did(WorkerId id, JobKey key, std::uint32_t compute_ms, FarmTime 
 
 /// The worker's speed relative to others at jobs of the same kinds: costs are only estimates, and a
 /// worker is not faster because its jobs were of a kind that takes less than estimated. The
-/// benchmark, corrected by the average of all hosts' actual to benchmark speed, weighs as much as
-/// one typical job (mean weighted by time).
+/// benchmark, corrected by the average ratio of actual to benchmark speed over all workers, weighs
+/// as much as one typical job (the mean, weighted by time).
 double Scheduler::estimated_speed(const Member& member) const {
   if (seconds_done_ == 0) return member.benchmark;
   Pace all;
@@ -132,9 +132,9 @@ const Scheduler::Outlook& Scheduler::outlook(const Plan& plan, FarmTime now) {
 }
 
 /// The maximum cost of a job that this worker, after what it holds, should do rather than leave to
-/// others: it finishes when everything is done, give or take half the job's time on the fastest
-/// worker; or while another worker is busy anyway. So a job is left to a faster worker only if that
-/// one is expected to be free in time, and the fastest idle worker takes any job.
+/// others: it finishes by the time everything is done, give or take half the job's time on the
+/// fastest worker; or while another worker is busy anyway. So a job is left to a faster worker only
+/// if that one is expected to be free in time, and the fastest idle worker takes any job.
 std::uint64_t Scheduler::greatest_cost(const Member& member, FarmTime now) const {
   constexpr double k_any = std::numeric_limits<double>::max();
   const double gone = seconds(now - outlook_.now);

@@ -99,7 +99,7 @@ class Sky {
   }
 
   Vec3 point(int x, int y) const { return at_depth_of(x, y, x); }
-  /// The point of this pixel's depth in another column.
+  /// The point in another column at this pixel's depth.
   Vec3 at_depth_of(int x, int y, int column) const {
     return camera_.unproject(across_[static_cast<std::size_t>(column)],
                              along_[static_cast<std::size_t>(y)], depths_[place(x, y)]);

@@ -20,7 +20,8 @@ namespace {
 constexpr std::uint64_t k_wire_every = 32;
 constexpr std::uint64_t k_enough_for_any_job = std::uint64_t{1} << 30;
 constexpr std::uint64_t k_ends_when_full_every = 5;
-/// In this share of the histories another run of the stage shares one in k_of_the_jobs of the jobs.
+/// In this share of the histories there is another run of the stage, with 1 / k_of_the_jobs as many
+/// jobs.
 constexpr double k_two_runs = 0.2;
 constexpr std::uint64_t k_of_the_jobs = 4;
 /// Otherwise a ventilator with many workers would be busy with heartbeats alone.

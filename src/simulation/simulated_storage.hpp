@@ -65,7 +65,7 @@ class SimulatedFolder {
 
   /// How long a reader retries what it cannot read.
   static inline const SimulatedTime k_patience = ReadPatience{}.missing;
-  /// When that host, or the named file, becomes readable.
+  /// From when on that host can read the files that are reported to it.
   SimulatedTime readable(std::uint32_t host) const {
     return std::max(sick_until_[host], queue_.now());
   }

@@ -24,7 +24,7 @@ class TaskThread {
 
   /// Call only when idle().
   void start(std::function<void()> task);
-  /// No task is running, or has ended without being taken.
+  /// True if no task is running, and none has ended that was not yet taken.
   bool idle() const { return idle_; }
   int fd() const { return event_.get(); }
   /// True once for each task that ended.

@@ -90,8 +90,9 @@ class JobGraph {
   /// needs.
   void add(JobName name, Job job);
   void add(JobName name, const JobNeeds& needs, Make make);
-  /// A step of the run that is no job: it may add jobs that depend on outputs. Steps that become
-  /// possible at the same time are called in the order in which they were added.
+  /// A step of the run that is no job: it may add jobs that depend on outputs. Steps and jobs'
+  /// functions that become possible at the same time are called in the order in which they were
+  /// added.
   void then(const JobNeeds& needs, Step step);
   /// Keeps alive the state that the functions refer to.
   void keep(std::shared_ptr<const void> state) { state_ = std::move(state); }

@@ -85,9 +85,9 @@ class Plan {
 
   /// Among the eligible ready jobs, issues the one with the longest path to the end (its own cost
   /// plus what follows); it becomes running under a new attempt number. (If very many are not
-  /// eligible: the first eligible one whose path is no longer than the maximum cost, or one with
-  /// the most memory.) If that job is not at home on `choice.host`, a job of about the same path
-  /// length that is at home there is preferred, or else one that has no home.
+  /// eligible: the first eligible one whose path is no longer than the maximum cost, or one of
+  /// those that need the most memory.) If that job is not at home on `choice.host`, a job of about
+  /// the same path length that is at home there is preferred, or else one that has no home.
   std::optional<IssuedJob> issue(const JobChoice& choice = {});
   /// Issues this job, which is ready; or one more attempt at it if it is running.
   IssuedJob issue(JobKey key);

@@ -243,7 +243,7 @@ std::string encode(const Message& message);
 /// The protocol version of a frame of another version; nothing if it is ours, or not of this
 /// protocol at all.
 std::optional<std::uint16_t> other_version_of(std::string_view frame);
-/// A Refused for a peer of another version: its layout, and the reason used here, exist in all
+/// A Refused for a peer of another version: its layout, and the Refusal used here, exist in all
 /// versions.
 std::string encode_refusal(std::uint16_t version, std::string_view reason);
 /// Decodes the whole frame as one message. Throws DataError otherwise; no other exception can

@@ -15,7 +15,7 @@ enum class Schedule : std::uint8_t { dynamic, fixed };
 struct SchedulerOptions {
   Schedule schedule = Schedule::dynamic;
   std::uint32_t expect_workers = 1;  // a fixed schedule is dealt out once this many have joined
-  FarmTime horizon{2000};            // time's worth of jobs in a full buffer, on any worker
+  FarmTime horizon{2000};            // how long a full input buffer lasts, on every worker
 };
 
 }  // namespace meshfarm

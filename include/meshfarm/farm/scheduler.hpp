@@ -92,7 +92,8 @@ class Scheduler {
   /// The memory that the worker's jobs may take together: its own, or its even share where others
   /// of its host report the same pool. 0: no limit.
   std::uint64_t memory_share(WorkerId id) const;
-  /// The largest memory of any worker; 0: no limit. Nothing if there is no worker.
+  /// The largest memory of any worker; no limit counts as the greatest number. Nothing if there is
+  /// no worker.
   std::optional<std::uint64_t> greatest_memory() const;
   /// Hosts that get no more jobs.
   std::vector<std::string> bad_hosts() const;

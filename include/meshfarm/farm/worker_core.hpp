@@ -31,8 +31,9 @@ struct WorkerLimits {
 /// inputs are read ahead, or its output is written.
 WorkerLimits limits_of(const Capacity& capacity, std::uint32_t buffer);
 
-/// Threshold of input bytes: of jobs with more, no more are read concurrently than are computed. A
-/// worker that waits for storage then starts computing as soon as it can, before it reads the next.
+/// Of jobs with at least this many bytes of input, no more are read concurrently than are computed.
+/// A worker that waits for storage then starts computing as soon as it can, before it reads the
+/// next.
 inline constexpr std::uint64_t k_much_input = std::uint64_t{1} << 20;
 
 /// What the job in a slot is doing.

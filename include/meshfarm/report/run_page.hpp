@@ -72,7 +72,7 @@ struct RunPage {
 /// One HTML page that loads nothing. The same run gives the same page, except for times.
 std::string render_run_page(const RunPage& page);
 
-/// Where a run's result was written, and its size, from the run's summary as JSON.
+/// Where a run's result was written, and its counts, from the run's summary as JSON.
 struct RunResult {
   std::string path;
   std::uint64_t triangles = 0;

@@ -122,7 +122,7 @@ struct SimulationResult {
   std::vector<SimulatedJob> jobs;  // in order of acceptance
   SimulatedTime first_push{0};     // when the first job was sent
   SimulatedTime last_accept{0};    // when the last result was accepted
-  SimulatedTime last_verified{0};  // the last result accepted by its size; 0: none
+  SimulatedTime last_verified{0};  // of those accepted by their size; 0: none was
   SimulatedTime time{0};           // end of the simulation
   std::uint64_t events = 0;
   std::uint64_t pushes = 0;  // jobs issued

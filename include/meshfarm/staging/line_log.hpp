@@ -25,7 +25,7 @@ class LineLog {
   LineLog(const LineLog&) = delete;
   LineLog& operator=(const LineLog&) = delete;
 
-  /// Adds a line, without its newline. Others see it within about a second.
+  /// Adds a line; its newline is appended here. Others see it within about a second.
   void add(std::string_view line);
 
  private:

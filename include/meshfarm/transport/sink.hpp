@@ -23,7 +23,7 @@ struct SinkOptions {
   std::uint16_t last_port = 0;
   SecurityOptions security;
   std::uint64_t run = 0;                       // must match the ventilator's
-  std::uint32_t algorithm = 0;                 // also
+  std::uint32_t algorithm = 0;                 // must match, too
   std::chrono::milliseconds patience{60'000};  // how long to look for a ventilator
   WhenFull when_full = WhenFull::wait;         // of the stage, and of the output's place
   const std::atomic<bool>* stop = nullptr;
