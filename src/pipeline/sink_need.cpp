@@ -84,7 +84,7 @@ std::string check_sink_need(const Manifest& manifest, const RunOptions& options,
            ": it may fail at the end; ask for fewer";
   }
   if (!free_bytes || need->bytes <= *free_bytes) return {};
-  return "the sink is going to take about " + std::to_string(need->bytes >> 20) + " MiB, " +
+  return "the sink will take about " + std::to_string(need->bytes >> 20) + " MiB, but only " +
          std::to_string(*free_bytes >> 20) +
          " MiB are free here: run it where there is more memory, or ask for fewer triangles";
 }

@@ -68,7 +68,7 @@ class Doctor {
           "a server that is away for a while makes writes fail, and files end empty",
           "mount it with hard; runs refuse it unless they are told --allow-soft");
     } else {
-      say("hard mount", Verdict::good, "writes wait for a server that is away for a while");
+      say("hard mount", Verdict::good, "reads and writes wait while the server is away");
     }
     if (mount.value("proto").value_or("tcp").starts_with("udp")) {
       say("transport", Verdict::bad, "UDP, which can damage data at high rates",
