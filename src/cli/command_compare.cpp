@@ -21,8 +21,7 @@ class CompareCommand : public Command {
   std::string_view name() const override { return "compare"; }
   std::string_view synopsis() const override { return "A B"; }
   std::string_view summary() const override {
-    return "compare two meshes in both directions: sampled distances, facing, colours, normals, "
-           "other values and triangle labels; also topology, sizes, angles and crossings of each";
+    return "compare two meshes: distances, facing and values both ways; sizes and topology of each";
   }
   void setup(po::options_description& options,
              po::positional_options_description& positional) override {

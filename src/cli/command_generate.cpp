@@ -35,13 +35,14 @@ class GenerateCommand : public Command {
     talk_.add_quiet(options);
   }
   void check() override {
-    if (!from_.empty() && !shuffle_) throw UsageError("--from goes with --shuffle");
+    if (!from_.empty() && !shuffle_) throw UsageError("--from needs --shuffle");
     shape_named(shape_);
   }
   void check_given(const GivenOptions& given) const override {
     for (const char* option : {"triangles", "shape"}) {
       if (from_.empty() || !given.contains(option)) continue;
-      throw UsageError("--" + std::string(option) + " is of a mesh that is made: not with --from");
+      throw UsageError("--" + std::string(option) +
+                       " cannot be combined with --from: no mesh is made then");
     }
   }
   int run() override {

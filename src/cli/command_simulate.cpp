@@ -62,7 +62,7 @@ class SimulateCommand : public Command {
       plan_.check_given(given);
       return;
     }
-    if (given.contains("output")) throw UsageError("-o goes with a STAGE and --paper");
+    if (given.contains("output")) throw UsageError("-o needs a STAGE and --paper");
     warn_of_unused(
         given, {"parts", "schedule", "storage", "link", "cache", "delay", "limits", "paper", "off"},
         "a STAGE");

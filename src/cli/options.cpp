@@ -97,17 +97,16 @@ void CutWords::check() {
   parse_uv(uv);
   cut.sort = chosen<SortAt>("--sort", sort, {{"here", SortAt::here}, {"farm", SortAt::farm}});
   if (sort == "farm" && scheme_word != "stream") {
-    throw UsageError("--sort farm goes with --scheme stream: parts of a cut are not sorted");
+    throw UsageError("--sort farm needs --scheme stream: parts of a cut are not sorted");
   }
   if (where != "here" && where != "farm" && where != "auto") {
     throw UsageError("--cut is 'here', 'farm' or 'auto', not '" + where + "'");
   }
   if (blocks > k_most_cut_blocks / 2) throw UsageError("--blocks: from 1 to 144");
   if (where == "farm" && scheme_word != "cut") {
-    throw UsageError(
-        "--cut farm goes with --scheme cut; with --scheme stream there is --sort farm");
+    throw UsageError("--cut farm needs --scheme cut; with --scheme stream use --sort farm");
   }
-  if (where == "farm" && weld != "exact") throw UsageError("--cut farm goes with --weld exact");
+  if (where == "farm" && weld != "exact") throw UsageError("--cut farm needs --weld exact");
   if (cut.parts > 1'000'000) throw UsageError("--parts: at most 1,000,000");
   if (cut.window_triangles < 1000 || cut.window_triangles > 1'000'000'000) {
     throw UsageError("--window: from 1,000 to 1,000,000,000 triangles");
@@ -156,7 +155,7 @@ void SecurityWords::add(po::options_description& options) {
 
 void SecurityWords::check() {
   if (insecure && !key_file.empty()) throw UsageError("--insecure uses no --key-file");
-  if (insecure_network && !insecure) throw UsageError("--insecure-network goes with --insecure");
+  if (insecure_network && !insecure) throw UsageError("--insecure-network needs --insecure");
   security.authentication = insecure ? Authentication::none : Authentication::curve;
   security.insecure_exposure = insecure_network ? Exposure::network : Exposure::loopback_only;
   security.key_file = key_file;

@@ -18,7 +18,7 @@ void OutputWords::add(po::options_description& options) {
 
 void OutputWords::check_given(const GivenOptions& given, const std::string& output) const {
   if (!given.contains("plain") || !is_output_format(output) || has_packing(output)) return;
-  log_warning("--plain changes nothing: " + output + " is no .glb");
+  log_warning("--plain changes nothing: " + output + " is not .glb");
 }
 
 std::vector<std::string> OutputWords::words() const {

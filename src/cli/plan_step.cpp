@@ -123,7 +123,7 @@ void PlanWords::check() {
 }
 
 void PlanWords::check_given(const GivenOptions& given) const {
-  if (!paper && given.contains("output")) throw UsageError("-o goes with --paper");
+  if (!paper && given.contains("output")) throw UsageError("-o needs --paper");
   if (!paper) warn_of_unused(given, {"off"}, "--paper");
   if (paper && given.contains("workers")) {
     log_warning("--workers changes nothing: --paper has farms of its own");

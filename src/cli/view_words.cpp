@@ -178,7 +178,7 @@ void ViewWords::check() {
                          render.colour_by == ColourBy::quality ||
                          render.colour_by == ColourBy::channel;
   if (!is_number) {
-    throw UsageError("--range goes with --colour-by of a number");
+    throw UsageError("--range needs --colour-by with a number: height, quality or a name");
   }
 }
 

@@ -66,12 +66,12 @@ TEST_CASE("an option that means another result than the command's is refused") {
   const std::string cube = shell.cube();
   const std::string out = shell.path("o.ply");
   const Line refused[] = {
-      {{"simulate", "--seeds", "2", "-o", out}, "-o goes with a STAGE and --paper"},
-      {{"simulate", "s", "-o", out}, "-o goes with --paper"},
+      {{"simulate", "--seeds", "2", "-o", out}, "-o needs a STAGE and --paper"},
+      {{"simulate", "s", "-o", out}, "-o needs --paper"},
       {{"generate", "-o", out, "--shuffle", "--from", cube, "--triangles", "100"},
-       "--triangles is of a mesh that is made: not with --from"},
+       "--triangles cannot be combined with --from: no mesh is made then"},
       {{"generate", "-o", out, "--shuffle", "--from", cube, "--shape", "torus"},
-       "--shape is of a mesh that is made: not with --from"},
+       "--shape cannot be combined with --from: no mesh is made then"},
   };
   for (const Line& line : refused) {
     const Ran ran = shell(line.words);
@@ -119,7 +119,7 @@ TEST_CASE("--plain of another format than GLB is told to change nothing, once") 
     CAPTURE(ran.err);
     CHECK(ran.code == 0);
     CHECK(has(ran.err, "warning: --plain changes nothing: "));
-    CHECK(has(ran.err, " is no .glb\n"));
+    CHECK(has(ran.err, " is not .glb\n"));
     CHECK(ran.err.find("--plain") == ran.err.rfind("--plain"));
   }
   CHECK_FALSE(has(shell({"convert", cube, shell.path("o.glb"), "--plain"}).err, "--plain"));
