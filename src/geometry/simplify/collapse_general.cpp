@@ -30,6 +30,10 @@ bool contains(const std::vector<std::uint32_t>& sorted, std::uint32_t vertex) {
   return std::binary_search(sorted.begin(), sorted.end(), vertex);
 }
 
+bool contains(const Triangle& t, std::uint32_t vertex) {
+  return t[0] == vertex || t[1] == vertex || t[2] == vertex;
+}
+
 bool has(const Corner& corner, std::uint32_t vertex) {
   return corner.next == vertex || corner.prev == vertex;
 }
@@ -348,38 +352,68 @@ bool GeneralJudge::is_closed_piece() const {
          std::all_of(b_.neighbours.begin(), b_.neighbours.end(), is_free);
 }
 
-/// Opens a piece: all triangles at `without` go; of a tetrahedron, only those at the edge.
-Collapse GeneralJudge::opening(const End& without) {
-  going_.clear();
-  standing_.clear();
-  for (const auto& [next, prev] : shared_) going_.push_back({a_.vertex, next, prev});
-  const bool is_tetrahedron = kept_.size() == 2;
-  for (const auto& [corner, at_b, vanishes] : kept_) {
-    const std::uint32_t end = (at_b ? b_ : a_).vertex;
-    const bool stays = is_tetrahedron || end != without.vertex;
-    (stays ? standing_ : going_).push_back({end, corner.next, corner.prev});
+/// Call after the lost vertices are listed.
+bool GeneralJudge::is_tetrahedron() const {
+  return lost_.size() == 4 && shared_.size() == 2 && kept_.size() == 2;
+}
+
+/// All edges of a triangle and of a tetrahedron end it. If all triangles are at one edge, only that
+/// edge does.
+void GeneralJudge::list_ends_of_piece() {
+  const bool is_triangle = kept_.empty() && shared_.size() == 1;
+  if (is_triangle || is_tetrahedron()) {
+    ends_of_piece_ = lost_;
+  } else if (kept_.empty()) {
+    ends_of_piece_ = {a_.vertex, b_.vertex};
   }
-  Collapse made{static_cast<std::uint32_t>(going_.size()), middle_, cost_of_opening(), false};
-  made.opens = true;
-  return made;
+}
+
+/// Opens a piece where that costs least: the triangles at one end of the edge go, of a tetrahedron
+/// the two at any of its edges.
+Collapse GeneralJudge::opening() {
+  std::vector<Triangle>& piece = triangles_of_piece_;
+  piece.clear();
+  for (const Corner& c : shared_) piece.push_back({a_.vertex, c.next, c.prev});
+  for (const Kept& k : kept_) {
+    piece.push_back({(k.at_b ? b_ : a_).vertex, k.corner.next, k.corner.prev});
+  }
+  Collapse best;
+  const auto try_without = [&](std::uint32_t v, std::uint32_t w) {
+    const auto goes = [&](const Triangle& t) { return contains(t, v) && contains(t, w); };
+    const auto standing = std::stable_partition(piece.begin(), piece.end(), goes);
+    const double cost = cost_of_opening({piece.begin(), standing}, {standing, piece.end()});
+    if (best.triangles > 0 && cost >= best.cost) return;
+    going_.assign(piece.begin(), standing);
+    best = {static_cast<std::uint32_t>(going_.size()), middle_, cost, false};
+    best.opens = true;
+  };
+  if (!is_tetrahedron()) {
+    for (const std::uint32_t v : {b_.vertex, a_.vertex}) try_without(v, v);
+    return best;
+  }
+  for (std::size_t i = 0; i < lost_.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) try_without(lost_[i], lost_[k]);
+  }
+  return best;
 }
 
 /// The cost by the distance of the removed triangles from those that stand for them, measured at
 /// the middles of the quarters of each triangle.
-double GeneralJudge::cost_of_opening() const {
+double GeneralJudge::cost_of_opening(std::span<const Triangle> going,
+                                     std::span<const Triangle> standing) const {
   const auto corners_of = [&](const Triangle& t) {
     return std::array{state_.positions[t[0]], state_.positions[t[1]], state_.positions[t[2]]};
   };
   const auto squared_from = [&](Vec3 point) {
     double squared = HUGE_VAL;
-    for (const Triangle& t : standing_) {
+    for (const Triangle& t : standing) {
       const auto [p, q, r] = corners_of(t);
       squared = std::min(squared, squared_distance(point, p, q, r));
     }
     return squared;
   };
   double cost = 0;
-  for (const Triangle& t : going_) {
+  for (const Triangle& t : going) {
     const auto corners = corners_of(t);
     const auto& [p, q, r] = corners;
     const Vec3 middle = (p + q + r) * (1.0 / 3);
@@ -394,18 +428,19 @@ double GeneralJudge::cost_of_opening() const {
 /// For a thin plate or a pin, one sheet does as well as two.
 Collapse GeneralJudge::end_of_piece(std::uint64_t most_triangles) {
   list_lost();
+  list_ends_of_piece();
+  going_.clear();
   Collapse best;
   if (removed_ <= most_triangles) best = {removed_, middle_, cost_of_lost(), false};
   if (!may_open_ || !is_closed_piece()) return best;
-  const Collapse without_a = opening(a_);
-  const Collapse without_b = opening(b_);
-  const Collapse& opened = without_a.cost < without_b.cost ? opening(a_) : without_b;
+  const Collapse opened = opening();
   const bool is_better = best.triangles == 0 || opened.cost < best.cost;
   return opened.triangles <= most_triangles && is_better ? opened : best;
 }
 
 GeneralCollapse GeneralJudge::judge(std::uint32_t a, std::uint32_t b,
                                     std::uint64_t most_triangles) {
+  ends_of_piece_.clear();
   if (state_.adjacency->count(a) + state_.adjacency->count(b) > k_max_star) return {};
   list_end(a, a_);
   list_end(b, b_);

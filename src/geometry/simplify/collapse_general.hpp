@@ -32,8 +32,6 @@ class GeneralJudge {
   void move_to(const CollapseState& state) { state_ = state; }
   /// Whether closed pieces may become sheets before they go.
   void let_open(bool may_open) { may_open_ = may_open; }
-  /// Must be called for each collapse.
-  void merge() { surroundings_.change(); }
 
   /// Neither end may be fixed.
   GeneralCollapse judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles);
@@ -44,6 +42,8 @@ class GeneralJudge {
   std::span<const std::pair<std::uint32_t, std::uint32_t>> vanishing() const { return vanishing_; }
   /// If it opens a closed piece: the triangles that go.
   std::span<const Triangle> going() const { return going_; }
+  /// If it ends a piece: vertices of it. Every edge between two of them would end it at this cost.
+  std::span<const std::uint32_t> ends_of_piece() const { return ends_of_piece_; }
   /// Vertices other than the merged one whose fans change.
   std::span<const std::uint32_t> changed() const { return changed_; }
   /// What the merged vertex gets, if the collapse was not refused.
@@ -100,8 +100,10 @@ class GeneralJudge {
   void add_cost_of_tips(Collapse& collapse);
   Collapse end_of_piece(std::uint64_t most_triangles);
   bool is_closed_piece() const;
-  Collapse opening(const End& without);
-  double cost_of_opening() const;
+  bool is_tetrahedron() const;
+  void list_ends_of_piece();
+  Collapse opening();
+  double cost_of_opening(std::span<const Triangle> going, std::span<const Triangle> standing) const;
 
   CollapseState state_;
   bool any_topology_;
@@ -122,8 +124,9 @@ class GeneralJudge {
   Vec3 middle_;
   Vec3 half_;                        // from there to b
   std::vector<std::uint32_t> lost_;  // ascending
-  std::vector<Triangle> going_;      // if a piece is opened
-  std::vector<Triangle> standing_;   // what is left of it
+  std::vector<std::uint32_t> ends_of_piece_;
+  std::vector<Triangle> triangles_of_piece_;
+  std::vector<Triangle> going_;  // of these, if it is opened
   Surroundings surroundings_;
   std::vector<Vec3> points_of_sheet_;
   CollapseStar star_;

@@ -130,6 +130,7 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   looks_.assign(vertices, 0);
   stale_.assign(vertices, 0);
   origins_.assign(mesh_.any_topology ? vertices : 0, 0);
+  piece_costs_.assign(mesh_.any_topology ? vertices : 0, 0);
   heap_.clear();
   room_for_all_ = mesh_.any_topology ? room_for_all(mesh_.flags, triangles) : 0;
   remember();
@@ -313,6 +314,10 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     const std::uint32_t a = queued.a();
     const std::uint32_t b = queued.b;
     if (is_gone(a) || is_gone(b) || queued.stamp != stamp_of(a, b)) continue;
+    if (const double least = cost_of_piece(a, b); must_wait(queued, least)) {
+      wait(queued, least);
+      continue;
+    }
     const std::uint64_t kept_before = kept_topology_;
     Collapse collapse = judge(a, b, most_at_once(excess, goal.triangles, ends_));
     if (cost_of(queued.key()) < max_cost_) blocked_ += kept_topology_ - kept_before;
@@ -328,6 +333,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     if (collapse.triangles == 0) {
       refused_[a] = refused_[b] = 1;
     } else if (must_wait(queued, cost)) {
+      remember_piece(collapse.cost);
       wait(queued, cost);
       waited_ += by_general_ ? 0 : 1;  // no ranking knows how far a piece is from the rest
     } else if (!must_not_cross(queued, collapse) && !is_guarded(a, b, collapse)) {
@@ -337,6 +343,17 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     }
   }
   return Stop::met;
+}
+
+/// What is remembered may be too little later, as pieces near this one go: the piece is judged
+/// again before it goes.
+void CollapseQueue::remember_piece(double cost) {
+  if (!by_general_ || piece_costs_.empty()) return;
+  for (const std::uint32_t v : general_.ends_of_piece()) piece_costs_[v] = cost;
+}
+
+double CollapseQueue::cost_of_piece(std::uint32_t a, std::uint32_t b) const {
+  return piece_costs_.empty() ? 0 : std::min(piece_costs_[a], piece_costs_[b]);
 }
 
 /// The cost of a collapse that leaves fewer triangles than the goal.
@@ -390,7 +407,6 @@ void CollapseQueue::keep(const SimplifyGoal& goal) {
 }
 
 void CollapseQueue::count(const Collapse& collapse) {
-  general_.merge();
   triangles_ -= collapse.triangles;
   max_cost_ = std::max(max_cost_, collapse.cost);
   last_cost_ = collapse.cost;
@@ -487,6 +503,7 @@ void CollapseQueue::update_lines(std::uint32_t merged) {
 void CollapseQueue::look_again(std::uint32_t vertex) {
   refused_[vertex] = 0;
   ++looks_[vertex];
+  if (!piece_costs_.empty()) piece_costs_[vertex] = 0;
   refresh(vertex);
   ranking_.for_edges_at(vertex, HUGE_VAL, [&](const RankedEdge& edge) { push(edge); });
 }

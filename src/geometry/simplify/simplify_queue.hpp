@@ -123,6 +123,8 @@ class CollapseQueue {
   PastPlanes end_at(std::uint32_t vertex) const;
   void rank(double share);
   Stop run(const SimplifyGoal& goal, const Progress& progress);
+  void remember_piece(double cost);
+  double cost_of_piece(std::uint32_t a, std::uint32_t b) const;
   double cost_of_fewer(const QueuedEdge& queued, double cost, std::uint64_t excess) const;
   bool is_hopeless() const;
   bool is_too_rough() const;
@@ -164,6 +166,8 @@ class CollapseQueue {
   std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
   std::vector<PastPlanes> past_;       // CollapseState::past
   std::vector<std::uint8_t> origins_;  // CollapseState::origins; empty where the topology is kept
+  // What an edge to another such vertex costs, if it would end its piece and was judged; else 0.
+  std::vector<double> piece_costs_;
   // 0 if no edge at the vertex is refused; else 1, plus one per change around the vertex since
   // then. Reset when its edges are ranked again.
   std::vector<std::uint8_t> refused_;

@@ -15,10 +15,6 @@ namespace {
 /// Rebuilding the index takes about as long as passing over this many points per point that it has.
 constexpr std::uint64_t k_worth_an_index = 8;
 
-/// The distance found for a piece is valid until one in this many of the vertices that are left has
-/// gone.
-constexpr std::uint64_t k_vertices_a_change = 1000;
-
 std::uint32_t vertex_now(const ShrinkingMesh& mesh, std::uint32_t v) {
   while (mesh.target[v] != v) v = mesh.target[v];
   return v;
@@ -28,26 +24,6 @@ std::uint32_t vertex_now(const ShrinkingMesh& mesh, std::uint32_t v) {
 
 double Surroundings::squared_distance(const ShrinkingMesh& mesh, const Lost& lost) {
   if (!index_) list_vertices(mesh);
-  if (lost.without.empty()) return mean_of(mesh, lost);
-  const auto [entry, is_new] = found_.try_emplace(lost.without.front());
-  Found& found = entry->second;
-  if (is_new || !is_up_to_date(found, lost)) {
-    found = {lost.middle, mean_of(mesh, lost), lost.without.size(), changes_};
-  }
-  return found.squared;
-}
-
-/// Whether it is the same piece, unchanged. Different edges of it compute its middle by sums in
-/// another order.
-bool Surroundings::is_up_to_date(const Found& found, const Lost& lost) const {
-  constexpr double k_same = 1e-12;  // of the squared distance
-  const std::uint64_t left = corners_ - std::min(corners_, changes_);
-  return found.vertices == lost.without.size() &&
-         changes_ - found.at <= left / k_vertices_a_change &&
-         squared_length(found.middle - lost.middle) <= k_same * found.squared;
-}
-
-double Surroundings::mean_of(const ShrinkingMesh& mesh, const Lost& lost) {
   if (lost.points.empty()) return search(mesh, lost.middle, lost.without);
   double sum = 0;
   for (const Vec3& point : lost.points) sum += search(mesh, point, lost.without);
@@ -98,7 +74,6 @@ void Surroundings::list_vertices(const ShrinkingMesh& mesh) {
     points.push_back(mesh.positions[v]);
     vertices_.push_back(v);
   }
-  corners_ = vertices_.size();
   add_points_inside(mesh, points);
   index_.emplace(std::move(points));
 }

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include <meshfarm/geometry/point_index.hpp>
@@ -26,9 +25,6 @@ struct ShrinkingMesh {
 /// stand for the surface, at their positions when first asked.
 class Surroundings {
  public:
-  /// Must be called for each change of the mesh: the distance found for a piece stays valid for a
-  /// few of them.
-  void change() { ++changes_; }
   struct Lost {
     Vec3 middle;
     std::span<const Vec3> points;            // where to search from; empty: from the middle
@@ -40,16 +36,6 @@ class Surroundings {
   double squared_distance(const ShrinkingMesh& mesh, const Lost& lost);
 
  private:
-  /// The distance found for a piece: by one of its edges, for all of them.
-  struct Found {
-    Vec3 middle;
-    double squared = 0;
-    std::size_t vertices = 0;  // of the piece: its tip may have the same lowest one
-    std::uint64_t at = 0;      // changes_
-  };
-
-  bool is_up_to_date(const Found& found, const Lost& lost) const;
-  double mean_of(const ShrinkingMesh& mesh, const Lost& lost);
   double search(const ShrinkingMesh& mesh, Vec3 from, std::span<const std::uint32_t> without);
   void list_vertices(const ShrinkingMesh& mesh);
   void add_points_inside(const ShrinkingMesh& mesh, std::vector<Vec3>& points);
@@ -58,9 +44,6 @@ class Surroundings {
   std::vector<std::uint32_t> vertices_;  // of the points
   std::optional<PointIndex> index_;
   std::uint64_t passed_over_ = 0;  // points of pieces that are gone, since the index was made
-  std::uint64_t corners_ = 0;      // vertices of the mesh, when it was first asked
-  std::uint64_t changes_ = 0;
-  std::unordered_map<std::uint32_t, Found> found_;  // by the lowest vertex of a piece
 };
 
 }  // namespace meshfarm

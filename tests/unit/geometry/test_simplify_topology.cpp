@@ -347,6 +347,27 @@ TEST_CASE("topology: of two specks that of which the rest is near goes first") {
   }
 }
 
+TEST_CASE("topology: a piece is worth more once the piece next to it is gone") {
+  const Mesh triangle{{{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}}, {{0, 1, 2}}};
+  const Mesh tetrahedron = scaled({{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
+                                   {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}},
+                                  0.01);
+  for (const Mesh& piece : {triangle, tetrahedron}) {
+    const std::size_t size = piece.triangles.size();
+    CAPTURE(size);
+    // Two pairs: each piece is 0.03 from the other, and 5 from all else.
+    Mesh mesh;
+    const std::array<Vec3, 4> places = {{{0, 0, 0}, {0, 0, 0.03}, {5, 0, 0}, {5, 0, 0.03}}};
+    for (const Vec3 place : places) append(mesh, piece, place);
+    const Simplifier result = reduced_topology(mesh, 2 * size, TopologyMode::simplify);
+    CHECK(result.triangles() == 2 * size);
+    const std::vector<Vec3>& left = result.mesh().positions;
+    for (const double x : {0.0, 5.0}) {
+      CHECK(std::any_of(left.begin(), left.end(), [&](Vec3 p) { return std::abs(p.x - x) < 1; }));
+    }
+  }
+}
+
 TEST_CASE("topology: leaves go everywhere alike, not from one end on") {
   Mesh mesh;
   constexpr std::uint32_t k_along = 200;
