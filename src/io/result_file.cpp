@@ -6,7 +6,7 @@
 //   result  = head | beside: bytes that are no part of the mesh | rungs, finest first | tail |
 //             where the tail is
 //   head    = "MFRM" | "RSLT" | version u32 | byte order u32 0x01020304
-//   rung    = blocks
+//   rung    = opened vertices u32 | their numbers, u32 each, ascending | blocks
 //   block   = vertices u32 | triangles u32 | bytes of packed triangles u32 | vertices | columns |
 //             packed triangles (packed_triangles.hpp)
 //   tail    = vertex format u8 | boundary vertices u32 | the boundary vertices |
@@ -20,10 +20,10 @@
 // Columns are labels, u32 a triangle, then texture coordinates, 6 x f32 a triangle, if the format
 // says so. A rung's vertices are the boundary vertices, then those of its blocks. A block has at
 // most 65536 vertices and as many triangles.
-//   Version 8. Version 1 was sealed, with the counts in front and one set of samples; version 2 had
+//   Version 9. Version 1 was sealed, with the counts in front and one set of samples; version 2 had
 //   nothing beside; in version 3 the summary did not say whether a ladder goes on; in version 4
 //   triangles were not packed; version 5 had one checksum for all, at its end; in version 7 samples
-//   were rounded as vertices are.
+//   were rounded as vertices are; version 8 did not name the opened vertices.
 // The summary that travels with the message:
 //   dropped degenerate u64 | dropped duplicate u64 | held by topology u8 | end of the ladder u8 |
 //   turned u64 | rungs as above | where the tail is | where what is beside is | of a part that was
@@ -32,6 +32,7 @@
 //   coincident corners u64
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -51,7 +52,7 @@ namespace {
 
 constexpr FileKind k_result_magic = {'M', 'F', 'R', 'M'};
 constexpr FileKind k_result_kind = {'R', 'S', 'L', 'T'};
-constexpr std::uint32_t k_result_version = 8;
+constexpr std::uint32_t k_result_version = 9;
 constexpr std::uint32_t k_result_byte_order = 0x01020304;
 constexpr std::uint32_t k_most_in_result_block = 65536;
 constexpr std::uint32_t k_max_sets = 1 << 20;
@@ -158,6 +159,7 @@ void get_rung(std::string_view bytes, const VertexFormat& format, std::string_vi
               ResultMesh& result) {
   ByteReader in(bytes, what);
   Mesh& mesh = result.mesh;
+  result.opened = in.get_array<std::uint32_t>(in.get<std::uint32_t>());
   while (in.remaining() > 0) {
     const auto vertices = in.get<std::uint32_t>();
     const auto triangles = in.get<std::uint32_t>();
@@ -179,6 +181,10 @@ void get_rung(std::string_view bytes, const VertexFormat& format, std::string_vi
       in.fail("a triangle uses a vertex that is not there");
     }
   }
+  const std::vector<std::uint32_t>& opened = result.opened;
+  const bool ascends =
+      std::adjacent_find(opened.begin(), opened.end(), std::greater_equal()) == opened.end();
+  if (!ascends || (!opened.empty() && opened.back() >= all)) in.fail("impossible opened vertices");
 }
 
 ResultMesh with_rung(ResultTail tail, std::size_t rung, std::string_view bytes,
@@ -317,11 +323,19 @@ FileSection ResultWriter::end_section() {
   return std::exchange(section_, {.offset = end});
 }
 
+void ResultWriter::begin_rung(std::span<const std::uint32_t> opened) {
+  ByteWriter out;
+  out.put(static_cast<std::uint32_t>(opened.size()));
+  out.put_array(opened);
+  put(out.bytes());
+}
+
 void ResultWriter::add(VertexView vertices, std::span<const Triangle> triangles,
                        const TriangleColumnsView& columns) {
   if (!columns.fits(vertices_.columns, triangles.size())) {
     throw Error("triangles without the columns that their file promises");
   }
+  if (section_.size == 0) begin_rung({});
   rung_.vertices += vertices.size();
   rung_.triangles += triangles.size();
   for (std::size_t done = 0; vertices.size() > 0 || !triangles.empty();) {
@@ -344,13 +358,16 @@ void ResultWriter::add(VertexView vertices, std::span<const Triangle> triangles,
 
 void ResultWriter::end_rung(std::int32_t level, std::uint64_t free_triangles, double error,
                             std::uint64_t refused) {
+  if (section_.size == 0) begin_rung({});
   rungs_.push_back({level, vertices_.boundary + rung_.vertices, rung_.triangles, free_triangles,
                     error, end_section(), refused});
   rung_ = {};
 }
 
 void ResultWriter::add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
-                            double error, std::uint64_t refused) {
+                            double error, std::uint64_t refused,
+                            std::span<const std::uint32_t> opened) {
+  begin_rung(opened);
   add(VertexView(mesh).part(vertices_.boundary), mesh.triangles, mesh.columns);
   end_rung(level, free_triangles, error, refused);
 }

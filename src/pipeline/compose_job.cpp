@@ -47,11 +47,13 @@ class Composer {
     StitchedMesh stitched = stitcher_.finish(seams.triangles, seams.columns);
     sample_seams(stitched);
     if (parameters_.keeps_between) append_surface_of(last_triangles(stitched));
+    put_open_first(stitched);
     const auto locked = static_cast<std::uint32_t>(stitched.open.size());
-    Simplifier simplifier(open_first(std::move(stitched)), {.locked_vertices = locked,
-                                                            .positions = positions_,
-                                                            .lines = parameters_.lines,
-                                                            .was_simplified = true});
+    Simplifier simplifier(std::move(stitched.mesh), {.locked_vertices = locked,
+                                                     .positions = positions_,
+                                                     .opened = std::move(stitched.opened),
+                                                     .lines = parameters_.lines,
+                                                     .was_simplified = true});
     simplify(simplifier);
     return write(simplifier, locked);
   }
@@ -111,7 +113,7 @@ class Composer {
   }
 
   /// Renumbers the open vertices to the front, keeping the order otherwise.
-  static Mesh open_first(StitchedMesh stitched) {
+  static void put_open_first(StitchedMesh& stitched) {
     Mesh& from = stitched.mesh;
     std::vector<std::uint32_t> number(from.positions.size(), 0);
     Mesh mesh;
@@ -127,7 +129,9 @@ class Composer {
     mesh.triangles = std::move(from.triangles);
     mesh.columns = std::move(from.columns);
     renumber_corners(mesh.triangles, number);
-    return mesh;
+    from = std::move(mesh);
+    for (std::uint32_t& v : stitched.opened) v = number[v];
+    std::sort(stitched.opened.begin(), stitched.opened.end());
   }
 
   void simplify(Simplifier& simplifier) const {
@@ -148,7 +152,8 @@ class Composer {
         {positions_, !mesh.appearances.empty(), locked, mesh.columns.set()},
         [&](std::string_view bytes) { file += bytes; },
         parameters_.keeps_between ? encode_surface(between_) : std::string());
-    result.add_rung(parameters_.level, mesh, simplifier.free_triangles());
+    result.add_rung(parameters_.level, mesh, simplifier.free_triangles(), 0, 0,
+                    simplifier.opened());
     result.finish(VertexView(mesh).part(0, locked), samples_);
     const ResultName name{key_of(job_).value, context_.attempt, context_.incarnation};
     const ResultSummary summary = result.summary_of(simplifier);

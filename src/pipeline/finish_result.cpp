@@ -168,8 +168,10 @@ class ResultFinish {
   /// Reduces to this many triangles, or as few as possible.
   Simplifier reduced(StitchedMesh stitched, std::uint64_t target) const {
     const std::uint64_t before = stitched.mesh.triangles.size();
-    SimplifyOptions options{
-        .positions = manifest_.positions, .lines = lines_, .was_simplified = true};
+    SimplifyOptions options{.positions = manifest_.positions,
+                            .opened = std::move(stitched.opened),
+                            .lines = lines_,
+                            .was_simplified = true};
     if (run_.finish == Finish::boundary) {
       options.seam = std::move(stitched.seam);
       options.lines.topology = TopologyMode::keep;

@@ -42,7 +42,7 @@ enum class PartSource : std::uint8_t { file, bundles, rung };
 /// Climbs the levels and keeps a snapshot at each level where the mesh changed.
 class LadderBuilder {
  public:
-  LadderBuilder(Part part, std::vector<SurfaceSamples> samples,
+  LadderBuilder(Part part, std::vector<std::uint32_t> opened, std::vector<SurfaceSamples> samples,
                 const SimplifyParameters& parameters, const JobContext& context,
                 std::string_view beside)
       : samples_(std::move(samples)),
@@ -52,6 +52,7 @@ class LadderBuilder {
         vertices_(vertices_of(part)),
         simplifier_(std::move(part.mesh), {.locked_vertices = part.boundary_vertices,
                                            .positions = part.positions,
+                                           .opened = std::move(opened),
                                            .lines = parameters.lines,
                                            .was_simplified = parameters.from.has_value(),
                                            .in_order = begins_in_order()}),
@@ -161,7 +162,7 @@ class LadderBuilder {
   /// Keeps the current mesh as a rung.
   void snapshot(std::int32_t level) {
     result_.add_rung(level, simplifier_.mesh(), simplifier_.free_triangles(), 0,
-                     simplifier_.refused_by_topology());
+                     simplifier_.refused_by_topology(), simplifier_.opened());
   }
 
   std::vector<SurfaceSamples> samples_;  // of the unchanged part
@@ -208,6 +209,7 @@ PartToBuild get_part_to_build(ByteReader& in) {
 /// A part of the stage, a rung of it, or a part that is built here, with what is known of it.
 struct PartAtHand {
   Part part;
+  std::vector<std::uint32_t> opened;  // ResultMesh::opened
   std::vector<SurfaceSamples> samples;
   std::string beside;
   std::optional<BuiltFacts> facts;
@@ -221,6 +223,7 @@ PartAtHand part_of_rung(const Job& job, const JobContext& context, std::uint32_t
   at_hand.part.mesh = std::move(rung.mesh);
   at_hand.part.boundary_vertices = rung.boundary_vertices;
   at_hand.part.positions = rung.positions;
+  at_hand.opened = std::move(rung.opened);
   at_hand.samples = std::move(rung.samples);
   at_hand.beside = rungs.beside();
   return at_hand;
@@ -230,7 +233,7 @@ PartAtHand part_at_hand(const Job& job, const JobContext& context, SimplifyParam
   if (parameters.from) return part_of_rung(job, context, parameters.from->place);
   if (!parameters.build) {
     if (job.inputs.size() != 1) throw DataError("a simplify job takes one part");
-    return {read_part(context, job.inputs[0]), {}, {}, {}};
+    return {read_part(context, job.inputs[0]), {}, {}, {}, {}};
   }
   PartOfBlocks built =
       build_from_blocks(context.stage, parameters.build->bundles, parameters.build->part);
@@ -240,7 +243,7 @@ PartAtHand part_at_hand(const Job& job, const JobContext& context, SimplifyParam
                          built.part.boundary_vertices, built.shared_triangles,
                          built.shared_boundary,        built.coincident_vertices,
                          built.dropped_degenerate,     built.coincident_corners};
-  return {std::move(built.part), {}, std::move(built.numbers), facts};
+  return {std::move(built.part), {}, {}, std::move(built.numbers), facts};
 }
 
 }  // namespace
@@ -366,7 +369,8 @@ JobOutput simplify_part(const Job& job, const JobContext& context) {
   if (!parameters.from) {
     samples.push_back(sample_surface(part.mesh, {.samples = parameters.samples, .threads = 1}));
   }
-  LadderBuilder ladder(std::move(part), std::move(samples), parameters, context, at_hand.beside);
+  LadderBuilder ladder(std::move(part), std::move(at_hand.opened), std::move(samples), parameters,
+                       context, at_hand.beside);
   ladder.build();
   const std::string file = ladder.take_file();
   ResultSummary summary = ladder.summary();

@@ -39,6 +39,7 @@ void Stitcher::add(const ResultMesh& result, std::uint32_t parts) {
   for (const Triangle& t : result.mesh.triangles) {
     mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   }
+  for (const std::uint32_t v : result.opened) stitched_.opened.push_back(v + offset);
   stitched_.seam.resize(first + result.boundary_vertices, 1);
   stitched_.seam.resize(mesh.positions.size(), 0);
 }

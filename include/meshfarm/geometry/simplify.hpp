@@ -87,6 +87,9 @@ struct SimplifyOptions {
   /// If not empty: one flag per vertex; only edges that touch a flagged vertex may collapse (the
   /// seam-only pass of Xiong et al. 2008, 3.3). A vertex merged from a flagged one is flagged.
   std::vector<std::uint8_t> seam;
+  /// Vertices of sheets that were closed pieces (Simplifier::opened): as each of these stands for
+  /// two sides, its collapses cost more.
+  std::vector<std::uint32_t> opened;
   LineOptions lines;
   /// The mesh, or most of it, comes from a simplifier. Edges are then taken by their cost even far
   /// from the goal, because merging nearest neighbours is no longer worthwhile.
@@ -187,6 +190,8 @@ class Simplifier {
   std::uint64_t dropped_duplicate() const;
   /// Input triangles that faced against most of their piece's area, and were turned.
   std::uint64_t turned() const;
+  /// The vertices of mesh() in sheets that were closed pieces, in ascending order.
+  std::vector<std::uint32_t> opened() const;
   /// Flags of the vertices of mesh() that are seam vertices or were merged from them.
   std::span<const std::uint8_t> seam() const;
 

@@ -103,9 +103,11 @@ class ResultWriter {
            const TriangleColumnsView& columns = {});
   void end_rung(std::int32_t level, std::uint64_t free_triangles, double error = 0,
                 std::uint64_t refused = 0);
-  /// A whole rung: the mesh's first vertices are the boundary vertices.
+  /// A whole rung: the mesh's first vertices are the boundary vertices. `opened`: the mesh's
+  /// Simplifier::opened().
   void add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
-                double error = 0, std::uint64_t refused = 0);
+                double error = 0, std::uint64_t refused = 0,
+                std::span<const std::uint32_t> opened = {});
   /// Samples: points of the original part, for measuring the error of the final mesh.
   void finish(const VertexView& boundary, std::span<const SurfaceSamples> samples);
 
@@ -125,6 +127,7 @@ class ResultWriter {
   const std::vector<Rung>& rungs() const { return rungs_; }
 
  private:
+  void begin_rung(std::span<const std::uint32_t> opened);
   void put(std::string_view bytes);
   FileSection end_section();
 
@@ -149,6 +152,7 @@ struct ResultMesh {
   Mesh mesh;
   std::uint32_t boundary_vertices = 0;
   PositionType positions = PositionType::float32;
+  std::vector<std::uint32_t> opened;  // Simplifier::opened()
   std::vector<SurfaceSamples> samples;
 };
 

@@ -16,6 +16,7 @@ struct StitchedMesh {
   Mesh mesh;  // the boundary triangles that were added come last
   /// Per vertex: whether it was a boundary vertex, locked in its part.
   std::vector<std::uint8_t> seam;
+  std::vector<std::uint32_t> opened;     // ResultMesh::opened of all parts
   std::uint64_t boundary_triangles = 0;  // how many were added
   /// The vertices that boundary triangles share with parts that were not added, ordered by part and
   /// local index: the boundary vertices of the composed mesh.

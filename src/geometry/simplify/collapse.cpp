@@ -306,13 +306,13 @@ bool CollapseJudge::is_all_of_piece(std::uint32_t a, std::uint32_t b) const {
   return corners <= k_most_corners;
 }
 
-/// Whether all vertices of the triangles at both ends are on a border and have no other flag.
+/// Whether all vertices of the triangles at both ends are on a border, where no line meets it.
 bool CollapseJudge::is_ribbon() const {
-  if (ring_a_.flags != k_border || ring_b_.flags != k_border) return false;
+  if (!is_on_plain_border(ring_a_.flags) || !is_on_plain_border(ring_b_.flags)) return false;
+  const auto is_on_border = [&](std::uint32_t v) { return is_on_plain_border(state_.flags[v]); };
   const auto is_open = [&](const Ring& ring) {
     for (std::uint32_t i = 0; i < ring.size; ++i) {
-      const bool on_border = state_.flags[ring.next[i]] == k_border;
-      if (!on_border || state_.flags[ring.prev[i]] != k_border) return false;
+      if (!is_on_border(ring.next[i]) || !is_on_border(ring.prev[i])) return false;
     }
     return true;
   };

@@ -63,7 +63,7 @@ PastPlanes CollapseQueue::planes_at(std::uint32_t vertex) const {
 
 /// The end of a ribbon, where its sides meet: its position and weight. Empty elsewhere.
 PastPlanes CollapseQueue::end_at(std::uint32_t vertex) const {
-  const auto is_on_border = [&](std::uint32_t v) { return mesh_.flags[v] == k_border; };
+  const auto is_on_border = [&](std::uint32_t v) { return is_on_plain_border(mesh_.flags[v]); };
   const auto is_of_ribbon = [&](std::uint32_t v) {
     const std::span<const Corner> fan = mesh_.adjacency.at(v);
     return is_on_border(v) && std::all_of(fan.begin(), fan.end(), [&](const Corner& c) {

@@ -189,6 +189,9 @@ std::uint64_t Simplifier::dropped_duplicate() const {
 std::uint64_t Simplifier::turned() const {
   return impl_->dropped.turned;
 }
+std::vector<std::uint32_t> Simplifier::opened() const {
+  return impl_->reduction->mesh().opened();
+}
 std::span<const std::uint8_t> Simplifier::seam() const {
   return impl_->seam;
 }

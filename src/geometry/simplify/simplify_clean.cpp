@@ -280,6 +280,10 @@ void check_input(const Mesh& mesh, const SimplifyOptions& options) {
   if (!options.seam.empty() && options.seam.size() != vertices) {
     throw UsageError("simplify: the seam flags are not one a vertex");
   }
+  const auto is_there = [&](std::uint32_t v) { return v < vertices; };
+  if (!std::all_of(options.opened.begin(), options.opened.end(), is_there)) {
+    throw UsageError("simplify: an opened vertex is not there");
+  }
   constexpr std::size_t k_limit = UINT32_MAX / 3 - 1;
   if (vertices > k_limit || mesh.triangles.size() > k_limit) {
     throw UsageError("simplify: the mesh is too big for 32-bit indices; cut it into parts");

@@ -324,7 +324,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     if (pieces_ != nullptr && collapse.triangles == 4 && pieces_->is_left_over(a)) {
       collapse.cost *= k_cost_of_left_over;
     }
-    if (!origins_.empty() && (origins_[a] & k_opened) != 0) {
+    if ((mesh_.flags[a] & k_opened) != 0) {
       collapse.cost *= k_loss_of_opened;
       collapse.certain *= k_loss_of_opened;
     }
@@ -429,7 +429,7 @@ void CollapseQueue::open(const Collapse& collapse) {
   ring_.erase(std::unique(ring_.begin(), ring_.end()), ring_.end());
   count(collapse);
   for (const std::uint32_t v : ring_) {
-    origins_[v] |= k_opened;
+    mesh_.flags[v] |= k_opened;
     stale_[v] = 1;
     classify(v);
   }

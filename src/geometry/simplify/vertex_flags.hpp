@@ -14,7 +14,8 @@ enum VertexFlag : std::uint8_t {
   k_crease = 8,    // on an edge sharper than LineOptions::crease_angle
   k_corner = 16,   // where creases meet or end
   k_complex = 32,  // its triangles are not one consistently oriented fan
-  k_thin = 64      // another sheet is near
+  k_thin = 64,     // another sheet is near
+  k_opened = 128   // of a sheet that was a closed piece: SimplifyOptions::opened
 };
 
 /// Whether a collapse at a vertex with these flags may remove an odd number of triangles. Elsewhere
@@ -25,9 +26,13 @@ inline bool may_lose_one(std::uint8_t flags) {
 
 /// What kind of piece a vertex is of, one byte each. A merged vertex has the flags of both.
 enum VertexOrigin : std::uint8_t {
-  k_pinched = 1,  // of a piece pinched off, or of what it was pinched off from
-  k_opened = 2    // of an opened piece that was closed before
+  k_pinched = 1  // of a piece pinched off, or of what it was pinched off from
 };
+
+/// Whether the vertex is on a border, and no line meets it there.
+inline bool is_on_plain_border(std::uint8_t flags) {
+  return (flags & ~k_opened) == k_border;
+}
 
 /// Passes leave the edges at these vertices alone.
 constexpr std::uint8_t k_still = k_fixed | k_complex;

@@ -46,6 +46,7 @@ WorkingMesh::WorkingMesh(Mesh mesh, const SimplifyOptions& options)
   Surface surface = clean_surface(mesh_, options, adjacency_);
   dropped_ = surface.dropped;
   flags_ = std::move(surface.flags);
+  for (const std::uint32_t v : options.opened) flags_[v] |= k_opened;
   creases_.find(mesh_, adjacency_, flags_);
   drop_unused_vertices();
   if (avoids_crossings_ && !seam_only_ && options.bound == nullptr) pieces_.find(mesh_, flags_);
@@ -68,6 +69,14 @@ bool WorkingMesh::is_above(const SimplifyGoal& goal) const {
 bool WorkingMesh::has_free_border() const {
   return std::any_of(flags_.begin(), flags_.end(),
                      [](std::uint8_t flags) { return (flags & (k_border | k_fixed)) == k_border; });
+}
+
+std::vector<std::uint32_t> WorkingMesh::opened() const {
+  std::vector<std::uint32_t> opened;
+  for (std::uint32_t v = 0; v < flags_.size(); ++v) {
+    if ((flags_[v] & k_opened) != 0) opened.push_back(v);
+  }
+  return opened;
 }
 
 std::vector<std::uint8_t> WorkingMesh::seam() const {

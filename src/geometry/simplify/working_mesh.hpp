@@ -49,6 +49,8 @@ class WorkingMesh {
   /// too many, it goes only where may_lose_one() allows it, at whatever cost; it may stay where
   /// another goal follows.
   bool is_above(const SimplifyGoal& goal) const;
+  /// Simplifier::opened.
+  std::vector<std::uint32_t> opened() const;
   /// 1 for each vertex that is, or was merged from, a seam vertex, else 0; empty without a seam.
   std::vector<std::uint8_t> seam() const;
 

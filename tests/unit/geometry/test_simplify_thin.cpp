@@ -10,6 +10,7 @@
 
 #include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
+#include <meshfarm/util/errors.hpp>
 
 #include "test_simplify_meshes.hpp"
 
@@ -217,15 +218,44 @@ TEST_CASE("plates stay closed with the topology, and where nothing may cross") {
   CHECK(avoids.triangles() == 3 * k_plates / 4 * 4);
 }
 
-TEST_CASE("what is left of a closed plate stands for both of its sides") {
+namespace {
+
+/// A closed plate, and a square that is larger than one side of it, but not than both.
+Mesh plate_and_square() {
   Mesh mesh = test::box({2, 2, 0.01});
-  // Larger than one side of the plate, but not than both.
   append(mesh, Mesh{{{0, 0, 0}, {2.2, 0, 0}, {2.2, 2.2, 0}, {0, 2.2, 0}}, {{0, 1, 2}, {0, 2, 3}}},
          {0, 0, 50});
-  Simplifier simplifier(mesh, {.lines = {.topology = TopologyMode::simplify}});
+  return mesh;
+}
+
+std::int64_t triangles_of_plate(const Mesh& mesh) {
+  return std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
+                       [&](const Triangle& t) { return mesh.positions[t[0]].z < 1; });
+}
+
+}  // namespace
+
+TEST_CASE("what is left of a closed plate stands for both of its sides") {
+  Simplifier simplifier(plate_and_square(), {.lines = {.topology = TopologyMode::simplify}});
   simplifier.reduce({.triangles = 3});
   CHECK(simplifier.triangles() == 3);
-  const Mesh& made = simplifier.mesh();
-  CHECK(std::count_if(made.triangles.begin(), made.triangles.end(),
-                      [&](const Triangle& t) { return made.positions[t[0]].z < 1; }) == 2);
+  CHECK(triangles_of_plate(simplifier.mesh()) == 2);
+}
+
+TEST_CASE("the next simplifier is told which sheets were closed") {
+  Simplifier first(plate_and_square(), {.lines = {.topology = TopologyMode::simplify}});
+  first.reduce({.triangles = 4});
+  REQUIRE(triangles_of_plate(first.mesh()) == 2);
+  const std::vector<std::uint32_t> opened = first.opened();
+  CHECK(opened.size() == 4);
+  for (const std::uint32_t v : opened) CHECK(first.mesh().positions[v].z < 1);
+  for (const bool is_told : {true, false}) {
+    CAPTURE(is_told);
+    Simplifier next(first.mesh(), {.opened = is_told ? opened : std::vector<std::uint32_t>(),
+                                   .lines = {.topology = TopologyMode::simplify}});
+    next.reduce({.triangles = 3});
+    CHECK(triangles_of_plate(next.mesh()) == (is_told ? 2 : 1));
+    CHECK(next.opened().size() == (is_told ? 4 : 0));
+  }
+  CHECK_THROWS_AS(Simplifier(plate_and_square(), {.opened = {99}}), UsageError);
 }

@@ -30,7 +30,8 @@ std::string ladder() {
   ResultWriter writer = writer_to(file, PositionType::float64, 2);
   for (Mesh& mesh : meshes) {
     std::copy_n(meshes[0].positions.begin(), 2, mesh.positions.begin());
-    writer.add_rung(10 * static_cast<std::int32_t>(writer.rungs().size()), mesh, 2);
+    const std::vector<std::uint32_t> opened = {1, 3};
+    writer.add_rung(10 * static_cast<std::int32_t>(writer.rungs().size()), mesh, 2, 0, 0, opened);
   }
   const std::vector<SurfaceSamples> samples = {{2.5, {{1, 2, 3}, {4, 5, 6}}}, {1.5, {}}};
   writer.finish(first_two(meshes[0]), samples);
@@ -46,6 +47,7 @@ TEST_CASE("each rung of a result comes back") {
   CHECK(first.mesh.positions == test::icosphere(1).positions);
   CHECK(first.mesh.triangles == test::icosphere(1).triangles);
   CHECK(first.boundary_vertices == 2);
+  CHECK(first.opened == std::vector<std::uint32_t>{1, 3});
   REQUIRE(first.samples.size() == 2);
   CHECK(first.samples[0].area == 2.5);
   CHECK(first.samples[0].points[1] == Vec3{4, 5, 6});
@@ -165,7 +167,18 @@ TEST_CASE("a result that does not fit together is refused, though its checksum i
   writer.add_rung(0, mesh, 0);
   writer.finish({}, {});
   CHECK_THROWS_WITH_AS(decode_result(file, 0, "r"),
-                       "r: a triangle uses a vertex that is not there at byte 84", DataError);
+                       "r: a triangle uses a vertex that is not there at byte 88", DataError);
+}
+
+TEST_CASE("opened vertices that are not there, or not in order, are refused") {
+  using Numbers = std::vector<std::uint32_t>;
+  for (const Numbers& opened : {Numbers{4}, Numbers{2, 1}, Numbers{1, 1}}) {
+    std::string file;
+    ResultWriter writer = writer_to(file, PositionType::float32, 0);
+    writer.add_rung(0, test::tetrahedron(), 0, 0, 0, opened);
+    writer.finish({}, {});
+    CHECK_THROWS_AS(decode_result(file, 0, "r"), DataError);
+  }
 }
 
 TEST_CASE("a rung may be empty") {

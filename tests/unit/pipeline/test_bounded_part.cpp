@@ -88,7 +88,8 @@ TEST_CASE("a finish leaves as it was stitched what is not within what is to be p
   test::MemorySource source(torus);
   const Stage stage = Stage::create(folder / "stage");
   const Manifest manifest = cut_mesh(source, stage, {.parts = 2});
-  const StitchedMesh stitched{torus, std::vector<std::uint8_t>(torus.positions.size(), 1), 0, {}};
+  const StitchedMesh stitched{
+      torus, std::vector<std::uint8_t>(torus.positions.size(), 1), {}, 0, {}};
   const auto finished = [&](double certified_error) {
     return finish_to_bound(stage, manifest, stitched,
                            {.max_error = 0.05,

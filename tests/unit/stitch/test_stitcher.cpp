@@ -50,6 +50,17 @@ TEST_CASE("parts and boundary triangles become one mesh") {
   CHECK(topology.euler == 1);
 }
 
+TEST_CASE("opened vertices are numbered on from part to part") {
+  ResultMesh left = half(0, -1);
+  ResultMesh right = half(1, 1);
+  left.opened = {2};
+  right.opened = {2, 3};
+  Stitcher stitcher(2);
+  stitcher.add(left);
+  stitcher.add(right);
+  CHECK(stitcher.finish({}).opened == std::vector<std::uint32_t>{2, 6, 7});
+}
+
 TEST_CASE("labels are stitched in the order of their triangles") {
   ResultMesh left = half(0, -1);
   ResultMesh right = half(1, 1);
