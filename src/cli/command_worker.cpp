@@ -55,8 +55,9 @@ class WorkerCommand : public FarmCommand {
   void check() override {
     security_.check();
     if (stage_.empty() == pool_.empty()) throw UsageError("give a STAGE, or --pool FOLDER");
-    if (!pool_.empty() && !run_.empty())
+    if (!pool_.empty() && !run_.empty()) {
       throw UsageError("--run needs a STAGE: it cannot be combined with --pool");
+    }
     if (threads_ == 0 || threads_ > 256) throw UsageError("--threads: from 1 to 256");
     if (!run_.empty()) run_key_ = parse_run(run_);
     if (!memory_.empty()) memory_bytes_ = parse_size(memory_, "--memory");

@@ -21,6 +21,10 @@ struct Corner {
   friend bool operator==(const Corner&, const Corner&) = default;
 };
 
+inline bool has_corner(const Triangle& t, std::uint32_t vertex) {
+  return t[0] == vertex || t[1] == vertex || t[2] == vertex;
+}
+
 /// The place of a vertex in a triangle; 3 if it is not there.
 inline std::size_t place_of(const Triangle& triangle, std::uint32_t vertex) {
   return static_cast<std::size_t>(std::find(triangle.begin(), triangle.end(), vertex) -

@@ -30,10 +30,6 @@ bool contains(const std::vector<std::uint32_t>& sorted, std::uint32_t vertex) {
   return std::binary_search(sorted.begin(), sorted.end(), vertex);
 }
 
-bool contains(const Triangle& t, std::uint32_t vertex) {
-  return t[0] == vertex || t[1] == vertex || t[2] == vertex;
-}
-
 bool has(const Corner& corner, std::uint32_t vertex) {
   return corner.next == vertex || corner.prev == vertex;
 }
@@ -379,7 +375,7 @@ Collapse GeneralJudge::opening() {
   }
   Collapse best;
   const auto try_without = [&](std::uint32_t v, std::uint32_t w) {
-    const auto goes = [&](const Triangle& t) { return contains(t, v) && contains(t, w); };
+    const auto goes = [&](const Triangle& t) { return has_corner(t, v) && has_corner(t, w); };
     const auto standing = std::stable_partition(piece.begin(), piece.end(), goes);
     const double cost = cost_of_opening({piece.begin(), standing}, {standing, piece.end()});
     if (best.triangles > 0 && cost >= best.cost) return;

@@ -7,14 +7,11 @@
 #include <optional>
 
 #include "geometry/bvh_morton.hpp"
+#include "geometry/simplify/adjacency.hpp"
 #include "geometry/simplify/vertex_flags.hpp"
 
 namespace meshfarm {
 namespace {
-
-bool has_corner(const Triangle& t, std::uint32_t vertex) {
-  return t[0] == vertex || t[1] == vertex || t[2] == vertex;
-}
 
 /// Whether a normal is within an angle of a direction, given by the squared cosine.
 bool is_along(Vec3 normal, Vec3 way, double cos_squared) {
