@@ -31,7 +31,8 @@ class GeneralJudge {
       : state_(state), any_topology_(any_topology) {}
   void move_to(const CollapseState& state) { state_ = state; }
   /// Whether closed pieces may become sheets before they go.
-  void let_open(bool may_open) { may_open_ = may_open; }
+  void let_open() { may_open_ = true; }
+  bool may_open() const { return may_open_; }
 
   /// Neither end may be fixed.
   GeneralCollapse judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles);

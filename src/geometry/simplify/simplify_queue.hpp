@@ -119,9 +119,11 @@ class CollapseQueue {
   enum class Stop : std::uint8_t { met, nothing_left, held, too_rough, told };
 
   void remember();
+  void remember_closed();
   PastPlanes planes_at(std::uint32_t vertex) const;
   PastPlanes end_at(std::uint32_t vertex) const;
   void rank(double share);
+  bool needs_room(std::uint64_t last) const;
   Stop run(const SimplifyGoal& goal, const Progress& progress);
   void remember_piece(double cost);
   double cost_of_piece(std::uint32_t a, std::uint32_t b) const;
@@ -188,7 +190,6 @@ class CollapseQueue {
   std::vector<Corner> joined_;
   std::vector<CornerId> joined_ids_;
   std::uint64_t triangles_ = 0;
-  std::uint64_t room_for_all_ = 0;  // triangles for all components; 0 if topology is kept
   std::vector<Mesh> kept_;
   std::size_t next_kept_ = 0;  // of the goal's counts
   // As of the last ranking.

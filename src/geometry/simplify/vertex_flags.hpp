@@ -26,7 +26,8 @@ inline bool may_lose_one(std::uint8_t flags) {
 
 /// What kind of piece a vertex is of, one byte each. A merged vertex has the flags of both.
 enum VertexOrigin : std::uint8_t {
-  k_pinched = 1  // of a piece pinched off, or of what it was pinched off from
+  k_was_closed = 1,  // of a component that had no border
+  k_pinched = 2      // of a piece pinched off, or of what it was pinched off from
 };
 
 /// Whether the vertex is on a border, and no line meets it there.

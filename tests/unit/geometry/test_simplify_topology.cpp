@@ -215,6 +215,32 @@ Mesh wall_on_floor(std::uint32_t n) {
   return mesh;
 }
 
+/// Bent tubes of radius 0.03 and length 9, open at both ends.
+Mesh hairs() {
+  constexpr std::uint32_t k_rings = 60;
+  constexpr std::uint32_t k_sides = 6;
+  Mesh mesh;
+  for (std::uint32_t hair = 0; hair < 40; ++hair) {
+    Mesh tube;
+    for (std::uint32_t ring = 0; ring < k_rings; ++ring) {
+      const double along = 0.15 * ring;
+      const double bend = std::sin(0.5 * along + hair);
+      for (std::uint32_t side = 0; side < k_sides; ++side) {
+        const double angle = 2 * 3.14159265358979 * side / k_sides;
+        tube.positions.push_back({along, bend + 0.03 * std::cos(angle), 0.03 * std::sin(angle)});
+        if (ring == 0) continue;
+        const std::uint32_t next = (side + 1) % k_sides;
+        const std::uint32_t here = ring * k_sides;
+        const std::uint32_t last = here - k_sides;
+        tube.triangles.push_back({last + side, last + next, here + next});
+        tube.triangles.push_back({last + side, here + next, here + side});
+      }
+    }
+    append(mesh, tube, {0, 0.2 * hair, 0.7 * (hair % 3)});
+  }
+  return mesh;
+}
+
 }  // namespace
 
 TEST_CASE("topology: keep keeps handles at any goal") {
@@ -389,6 +415,18 @@ TEST_CASE("topology: leaves go everywhere alike, not from one end on") {
     CHECK(count > 35);
     CHECK(count < 65);
   }
+}
+
+TEST_CASE("topology: open tubes that close on the way may be opened again") {
+  const Mesh mesh = hairs();
+  const Validity before = check(mesh);
+  REQUIRE(before.border_edges > 0);
+  const std::uint64_t goal = 14 * before.components;
+  const Simplifier result = reduced_topology(mesh, goal, TopologyMode::simplify);
+  CHECK(result.triangles() <= goal);
+  CHECK(is_clean(result.mesh()));
+  CHECK(check(result.mesh()).border_edges > goal / 2);
+  CHECK(topology_error(mesh, result.mesh()).rms < 0.08);
 }
 
 TEST_CASE("topology: needles that stand out far are left") {
