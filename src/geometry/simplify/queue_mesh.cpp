@@ -207,7 +207,10 @@ std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
   }
   target_.push_back(copy);
   if (!past_.empty()) past_.emplace_back();
-  if (!origins_.empty()) origins_.push_back(std::uint8_t{origins_[vertex]});
+  if (!origins_.empty()) {
+    const std::uint8_t origin = origins_[vertex];
+    origins_.push_back(origin);
+  }
   if (!piece_costs_.empty()) piece_costs_.push_back(0);
   refused_.push_back(0);
   looks_.push_back(0);
