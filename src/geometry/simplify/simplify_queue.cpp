@@ -112,7 +112,7 @@ class OpenComponents {
       std::uint8_t& component = flags_[sets_.find(v)];
       component |= k_used;
       if ((flags[v] & (k_fixed | k_border)) == k_border) component |= k_open;
-      if ((flags[v] & (k_fixed | k_border | k_complex)) != 0) component |= k_any;
+      if ((flags[v] & (k_fixed | k_border | k_complex)) != 0) component |= k_unclosed;
     }
   }
   /// Whether it has a border where it is not fixed.
@@ -127,7 +127,7 @@ class OpenComponents {
   }
 
  private:
-  enum : std::uint8_t { k_used = 1, k_open = 2, k_any = 4 };
+  enum : std::uint8_t { k_used = 1, k_open = 2, k_unclosed = 4 };
 
   UnionFind sets_;
   std::vector<std::uint8_t> flags_;  // of each component, at its vertex
