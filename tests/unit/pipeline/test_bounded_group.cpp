@@ -36,8 +36,8 @@ double diagonal_of(const Mesh& mesh) {
 
 /// A torus, and another just inside of it that faces the other way.
 Mesh thin_shell() {
-  Mesh shell = test::torus(180, 120);
-  Mesh inner = test::torus(180, 120);
+  Mesh shell = test::torus(150, 100);
+  Mesh inner = test::torus(150, 100);
   const double thickness = 0.002 * diagonal_of(shell);
   const std::vector<Vec3> normals = vertex_normals(inner);
   for (std::size_t v = 0; v < inner.positions.size(); ++v) {
@@ -51,7 +51,7 @@ Mesh thin_shell() {
 }  // namespace
 
 TEST_CASE("pieces keep a bound on the error, with about as few triangles as the sink") {
-  const Mesh torus = test::torus(240, 160);
+  const Mesh torus = test::torus(180, 120);
   FinishBench bench(torus, 6);
   const double bound = 0.002 * diagonal_of(torus);
   const RunSummary made = bench.run(FinishBench::bounded(0.002), "farm.ply");
@@ -136,13 +136,13 @@ TEST_CASE("under a bound the surroundings of many seams are several groups, too"
 }
 
 TEST_CASE("streams keep a bound in pieces, swept or proven, sorted before or by jobs") {
-  const Mesh torus = test::torus(240, 160);
+  const Mesh torus = test::torus(160, 110);
   const double bound = 0.002 * diagonal_of(torus);
   for (const bool certify : {false, true}) {
     std::string bytes;
     for (const SortAt sort : {SortAt::here, SortAt::farm}) {
       FinishBench bench(
-          torus, {.scheme = Scheme::stream, .parts = 6, .sort = sort, .window_triangles = 3'000});
+          torus, {.scheme = Scheme::stream, .parts = 6, .sort = sort, .window_triangles = 2'000});
       RunOptions options = FinishBench::bounded(0.002);
       options.certify = certify;
       const RunSummary made = bench.run(options, "farm.ply");
@@ -163,11 +163,14 @@ TEST_CASE("streams keep a bound in pieces, swept or proven, sorted before or by 
         CHECK(measure_distance(torus, mesh, many).max < 1.1 * bound);
         CHECK(measure_distance(mesh, torus, many).max < 1.1 * bound);
       }
+      if (sort == SortAt::farm) {
+        CHECK(read_file(bench.path("farm.ply")) == bytes);
+        continue;
+      }
+      bytes = read_file(bench.path("farm.ply"));
       options.finish_place = FinishPlace::here;
       const RunSummary here = bench.run(options, "here.ply");
       CHECK(made.triangles < 1.05 * static_cast<double>(here.triangles));
-      if (bytes.empty()) bytes = read_file(bench.path("farm.ply"));
-      CHECK(read_file(bench.path("farm.ply")) == bytes);
     }
   }
 }

@@ -35,7 +35,7 @@ constexpr std::uint32_t k_parts = 12;  // two jobs join the boundary
 
 /// A torus where some triangles have vertices of their own, and some have no area.
 Mesh partly_torn() {
-  Mesh mesh = test::torus(120, 60);
+  Mesh mesh = test::torus(100, 50);
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 7) {
     for (std::uint32_t& v : mesh.triangles[i]) {
       mesh.positions.push_back(mesh.positions[v]);
