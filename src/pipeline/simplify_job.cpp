@@ -122,7 +122,11 @@ class LadderBuilder {
       if (simplifier_.free_triangles() == 0) return;
       reduce({.triangles = floor, .max_cost = level_cost(level, parameters_.cost_unit)});
       if (simplifier_.is_held_by_topology()) return;
-      if (simplifier_.triangles() < result_.rungs().back().triangles) snapshot(level);
+      if (simplifier_.triangles() < result_.rungs().back().triangles) {
+        snapshot(level);
+      } else {
+        result_.set_refused(simplifier_.refused_by_topology());
+      }
       if (is_enough(floor)) end_ = LadderEnd::enough;
       if (is_refused_too_much()) end_ = LadderEnd::refusals;
       if (end_ != LadderEnd::floor) return;

@@ -108,6 +108,8 @@ class ResultWriter {
   void add_rung(std::int32_t level, const Mesh& mesh, std::uint64_t free_triangles,
                 double error = 0, std::uint64_t refused = 0,
                 std::span<const std::uint32_t> opened = {});
+  /// Of the last rung, where more was refused since, and nothing collapsed.
+  void set_refused(std::uint64_t refused) { rungs_.back().refused = refused; }
   /// Samples: points of the original part, for measuring the error of the final mesh.
   void finish(const VertexView& boundary, std::span<const SurfaceSamples> samples);
 

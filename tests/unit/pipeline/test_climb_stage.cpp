@@ -193,6 +193,23 @@ TEST_CASE("parts that are refused too much are asked for again without their top
   CHECK(asked_beside(800));
 }
 
+TEST_CASE("a rung is finer if it has more triangles, not if its ladder would go on") {
+  const Manifest manifest = manifest_of(2, 100'000);
+  const RunOptions options{.ratio = 0.1};  // 40,000 are wanted before the finish
+  const auto source = next_of(manifest, options);
+  const std::vector<Job> jobs = source({});
+  const auto finer = [&](const std::vector<Rung>& ladder) {
+    std::vector<AcceptedJob> done;
+    for (const Job& job : jobs) done.push_back(accepted_ended(job, ladder, LadderEnd::refusals));
+    CHECK(source(done).empty());
+    return chosen_of(manifest, options, done).finer;
+  };
+  CHECK(finer({rung(10, 40'000)}).empty());
+  const std::vector<ChosenRung> first = finer({rung(9, 60'000), rung(10, 40'000)});
+  REQUIRE(first.size() == 2);
+  CHECK(first[0].rung == 0);
+}
+
 TEST_CASE("parts that were refused too much go on if the others would not have paid") {
   const Manifest manifest = manifest_of(2, 100'000);
   const RunOptions options{.ratio = 0.1};  // 40,000 are wanted before the finish

@@ -64,8 +64,10 @@ class ClimbBench {
   }
 
   ClimbedPart climb(TopologyMode topology, std::uint64_t end_triangles = 0,
-                    std::uint64_t foreseen_triangles = 0) const {
+                    std::uint64_t foreseen_triangles = 0,
+                    std::uint64_t start_triangles = 400) const {
     SimplifyParameters parameters = parameters_of(topology);
+    parameters.start_triangles = start_triangles;
     parameters.end_triangles = end_triangles;
     parameters.foreseen_triangles = foreseen_triangles;
     return do_job({std::string(k_simplify_kind), {part_}, encode_parameters(parameters)});
@@ -149,6 +151,28 @@ TEST_CASE("a ladder ends where too much is going to be refused, if that is fores
   CHECK(bench.climb(TopologyMode::keep_while_fair, 0, 100'000).summary.end == LadderEnd::floor);
   CHECK(bench.climb(TopologyMode::simplify, 0, k_wanted).summary.end == LadderEnd::floor);
   CHECK(bench.climb(TopologyMode::keep, 0, k_wanted).summary.end == LadderEnd::floor);
+}
+
+TEST_CASE("a rung below which all is refused tells so, also where it is the unchanged part") {
+  Part apart;  // single triangles: no edge can collapse
+  apart.boundary_vertices = 0;
+  apart.positions = PositionType::float32;
+  for (std::uint32_t i = 0; i < 500; ++i) {
+    const Vec3 at = {3.0 * i, 0, 0};
+    for (const Vec3& p : {at, at + Vec3{1, 0, 0}, at + Vec3{0, 1, 0}}) {
+      apart.mesh.positions.push_back(p);
+    }
+    apart.mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  for (const std::uint64_t start : {400, 500}) {
+    const ClimbBench bench(apart);
+    const ClimbedPart climbed = bench.climb(TopologyMode::keep_while_fair, 0, 250, start);
+    REQUIRE(climbed.summary.rungs.size() == 1);
+    CHECK(climbed.last().triangles == 500);
+    CHECK(climbed.last().refused >= 500);
+    CHECK(climbed.summary.end == LadderEnd::refusals);
+    CHECK((climbed.last().level == k_input_level) == (start == 500));
+  }
 }
 
 TEST_CASE("a ladder that ended for what is refused goes on from its last rung") {
