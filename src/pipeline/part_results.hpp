@@ -21,8 +21,17 @@ struct PartResults {
     summaries[part] = decode_summary(output.summary, "summary of " + output.file.name);
     files[part] = output.file;
   }
+  /// As many as the ladders would have at this level, those that can go on included.
   std::uint64_t free_triangles(std::int32_t at_level) const {
     return free_triangles_at(summaries, at_level);
+  }
+  /// As many as the rungs of this level have.
+  std::uint64_t made_at(std::int32_t at_level) const {
+    std::uint64_t triangles = 0;
+    for (const ResultSummary& result : summaries) {
+      triangles += result.rungs[rung_at(result.rungs, at_level)].free_triangles;
+    }
+    return triangles;
   }
 
   std::vector<JobName> made_by;  // the last accepted job

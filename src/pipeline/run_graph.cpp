@@ -220,22 +220,13 @@ class Run {
         topology == TopologyMode::keep_while_fair ? TopologyMode::automatic : topology;
   }
 
-  /// The free triangles of the rungs of this level. Nothing is assumed of ladders that could go on.
-  std::uint64_t made_at(std::int32_t level) const {
-    std::uint64_t triangles = 0;
-    for (const ResultSummary& result : results().summaries) {
-      triangles += result.rungs[rung_at(result.rungs, level)].free_triangles;
-    }
-    return triangles;
-  }
-
   /// For ladders only: swept streams have one rung, and composed parts have no ladder.
   void add_finer(ChosenRungs& chosen) const {
     if (jobs().by_error() || chosen.rungs.size() != results().files.size()) return;
     const std::int32_t chosen_level = results().level;
-    const std::uint64_t before = made_at(chosen_level);
+    const std::uint64_t before = results().made_at(chosen_level);
     for (std::int32_t level = chosen_level - 1; level >= chosen_level - k_most_finer; --level) {
-      const auto triangles = static_cast<double>(made_at(level));
+      const auto triangles = static_cast<double>(results().made_at(level));
       if (triangles < k_finer * static_cast<double>(before)) continue;
       for (std::size_t p = 0; p < results().files.size(); ++p) {
         const ResultSummary& result = results().summaries[p];
