@@ -9,9 +9,9 @@ function(meshfarm_compile_options target)
     -Wno-missing-field-initializers -ffp-contract=off -fno-math-errno
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
   if(MESHFARM_SANITIZE)
-    # A null pointer that is used ends the program without a check of each, and nothing is cast down
-    # to a class with virtual functions. Together with -O2 this makes the tests a quarter faster, and
-    # their compilation a sixth.
+    # UBSan's checks null and vptr are left out: using a null pointer ends the program anyway, and
+    # nothing is cast down to a class with virtual functions. With -O2, tests run a quarter faster
+    # than with these checks and -O1, and are compiled a sixth faster.
     target_compile_options(${target} PRIVATE -fsanitize=${MESHFARM_SANITIZE} -fno-sanitize=null,vptr
                                              -fno-omit-frame-pointer -fno-sanitize-recover=all -O2 -g1)
     target_link_options(${target} PRIVATE -fsanitize=${MESHFARM_SANITIZE})

@@ -26,7 +26,7 @@ struct PartResults {
     return free_triangles_at(summaries, at_level);
   }
   /// As many as the rungs of this level have.
-  std::uint64_t made_at(std::int32_t at_level) const {
+  std::uint64_t free_triangles_made(std::int32_t at_level) const {
     std::uint64_t triangles = 0;
     for (const ResultSummary& result : summaries) {
       triangles += result.rungs[rung_at(result.rungs, at_level)].free_triangles;

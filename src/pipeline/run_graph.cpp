@@ -224,9 +224,9 @@ class Run {
   void add_finer(ChosenRungs& chosen) const {
     if (jobs().by_error() || chosen.rungs.size() != results().files.size()) return;
     const std::int32_t chosen_level = results().level;
-    const std::uint64_t before = results().made_at(chosen_level);
+    const std::uint64_t before = results().free_triangles_made(chosen_level);
     for (std::int32_t level = chosen_level - 1; level >= chosen_level - k_most_finer; --level) {
-      const auto triangles = static_cast<double>(results().made_at(level));
+      const auto triangles = static_cast<double>(results().free_triangles_made(level));
       if (triangles < k_finer * static_cast<double>(before)) continue;
       for (std::size_t p = 0; p < results().files.size(); ++p) {
         const ResultSummary& result = results().summaries[p];

@@ -198,16 +198,18 @@ TEST_CASE("a rung is finer if it has more triangles, not if its ladder would go 
   const RunOptions options{.ratio = 0.1};  // 40,000 are wanted before the finish
   const auto source = next_of(manifest, options);
   const std::vector<Job> jobs = source({});
-  const auto finer = [&](const std::vector<Rung>& ladder) {
-    std::vector<AcceptedJob> done;
-    for (const Job& job : jobs) done.push_back(accepted_ended(job, ladder, LadderEnd::refusals));
+  const auto finer = [&](const std::vector<Rung>& first, const std::vector<Rung>& second) {
+    const std::vector<AcceptedJob> done = {accepted_ended(jobs[0], first, LadderEnd::refusals),
+                                           accepted_ended(jobs[1], second, LadderEnd::refusals)};
     CHECK(source(done).empty());
     return chosen_of(manifest, options, done).finer;
   };
-  CHECK(finer({rung(10, 40'000)}).empty());
-  const std::vector<ChosenRung> first = finer({rung(9, 60'000), rung(10, 40'000)});
-  REQUIRE(first.size() == 2);
-  CHECK(first[0].rung == 0);
+  // Level 10 is chosen. The first would have 15,625 triangles there, and 25,000 one level before.
+  CHECK(finer({rung(8, 40'000)}, {rung(10, 30'000)}).empty());
+  const std::vector<Rung> both = {rung(9, 60'000), rung(10, 40'000)};
+  const std::vector<ChosenRung> found = finer(both, both);
+  REQUIRE(found.size() == 2);
+  CHECK(found[0].rung == 0);
 }
 
 TEST_CASE("parts that were refused too much go on if the others would not have paid") {
