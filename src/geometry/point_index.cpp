@@ -28,7 +28,8 @@ struct PointCloud {
 /// The result of a search so far, in the form that nanoflann requires: the nearest that counts.
 class LeastValue {
  public:
-  explicit LeastValue(const std::function<double(std::uint32_t)>& value) : value_(value) {}
+  LeastValue(const std::function<double(std::uint32_t)>& value, double most)
+      : value_(value), least_(most) {}
   bool addPoint(double squared, std::uint32_t point) {  // NOLINT(readability-identifier-naming)
     if (squared < least_) least_ = std::min(least_, value_(point));
     return true;
@@ -39,7 +40,7 @@ class LeastValue {
 
  private:
   const std::function<double(std::uint32_t)>& value_;
-  double least_ = HUGE_VAL;
+  double least_;
 };
 
 std::array<double, 3> array_of(Vec3 p) {
@@ -77,8 +78,9 @@ std::size_t PointIndex::nearest(Vec3 from, std::span<std::uint32_t> found) const
                                   squared.data());
 }
 
-double PointIndex::least(Vec3 from, const std::function<double(std::uint32_t)>& value) const {
-  LeastValue least(value);
+double PointIndex::least(Vec3 from, double most,
+                         const std::function<double(std::uint32_t)>& value) const {
+  LeastValue least(value, most);
   tree_->index().findNeighbors(least, array_of(from).data(), nanoflann::SearchParams());
   return least.worstDist();
 }

@@ -26,9 +26,10 @@ class PointIndex {
   /// written: as many as there is room for, or all.
   std::size_t nearest(Vec3 from, std::span<std::uint32_t> found) const;
 
-  /// The least `value` of the points, visited nearest first, as long as their squared distance is
-  /// below the least value so far; infinite if there are none.
-  double least(Vec3 from, const std::function<double(std::uint32_t point)>& value) const;
+  /// The least of `most` and the `value` of the points, visited nearest first, as long as their
+  /// squared distance is below the least so far.
+  double least(Vec3 from, double most,
+               const std::function<double(std::uint32_t point)>& value) const;
 
  private:
   class Tree;

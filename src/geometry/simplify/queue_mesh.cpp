@@ -211,7 +211,7 @@ std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
     const std::uint8_t origin = origins_[vertex];
     origins_.push_back(origin);
   }
-  if (!piece_costs_.empty()) piece_costs_.push_back(0);
+  if (!piece_ends_.empty()) piece_ends_.emplace_back();
   refused_.push_back(0);
   looks_.push_back(0);
   stale_.push_back(1);

@@ -146,7 +146,7 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   refused_.assign(vertices, 0);
   looks_.assign(vertices, 0);
   stale_.assign(vertices, 0);
-  piece_costs_.assign(mesh_.any_topology ? vertices : 0, 0);
+  piece_ends_.assign(mesh_.any_topology ? vertices : 0, {});
   heap_.clear();
   remember_closed();
   remember();
@@ -179,6 +179,7 @@ void CollapseQueue::rank(double share) {
   collapses_before_ = collapses_;
   waited_ = 0;
   ranked_at_ = triangles_;
+  for (PieceEnd& end : piece_ends_) end.a = end.b = 0;
   const auto vertices = static_cast<std::uint32_t>(target_.size());
   for (const RankedEdge& e : ranking_.cheapest(0, vertices, {limit_, HUGE_VAL})) {
     first_.emplace_back(e, stamp_of(e.a, e.b));
@@ -347,6 +348,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     const std::uint32_t a = queued.a();
     const std::uint32_t b = queued.b;
     if (is_gone(a) || is_gone(b) || queued.stamp != stamp_of(a, b)) continue;
+    if (is_queued_otherwise(queued)) continue;
     if (const double least = cost_of_piece(a, b); must_wait(queued, least)) {
       wait(queued, least);
       continue;
@@ -366,7 +368,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     if (collapse.triangles == 0) {
       refused_[a] = refused_[b] = 1;
     } else if (must_wait(queued, cost)) {
-      remember_piece(collapse.cost);
+      remember_piece(queued, collapse.cost);
       wait(queued, cost);
       waited_ += by_general_ ? 0 : 1;  // no ranking knows how far a piece is from the rest
     } else if (!must_not_cross(queued, collapse) && !is_guarded(a, b, collapse)) {
@@ -380,13 +382,31 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
 
 /// What is remembered may be too little later, as pieces near this one go: the piece is judged
 /// again before it goes.
-void CollapseQueue::remember_piece(double cost) {
-  if (!by_general_ || piece_costs_.empty()) return;
-  for (const std::uint32_t v : general_.ends_of_piece()) piece_costs_[v] = cost;
+void CollapseQueue::remember_piece(const QueuedEdge& queued, double cost) {
+  if (!by_general_ || piece_ends_.empty()) return;
+  for (const std::uint32_t v : general_.ends_of_piece()) {
+    piece_ends_[v] = {cost, queued.a(), queued.b};
+  }
 }
 
 double CollapseQueue::cost_of_piece(std::uint32_t a, std::uint32_t b) const {
-  return piece_costs_.empty() ? 0 : std::min(piece_costs_[a], piece_costs_[b]);
+  return piece_ends_.empty() ? 0 : std::min(piece_ends_[a].cost, piece_ends_[b].cost);
+}
+
+/// Whether another edge that would end the same piece is queued already. If none is, this one is
+/// from now on.
+bool CollapseQueue::is_queued_otherwise(const QueuedEdge& queued) {
+  const std::uint32_t a = queued.a();
+  const std::uint32_t b = queued.b;
+  if (cost_of_piece(a, b) == 0) return false;
+  for (const PieceEnd& end : {piece_ends_[a], piece_ends_[b]}) {
+    if (end.b != 0) return end.a != a || end.b != b;
+  }
+  for (const std::uint32_t v : {a, b}) {
+    piece_ends_[v].a = a;
+    piece_ends_[v].b = b;
+  }
+  return false;
 }
 
 /// The cost of a collapse that leaves fewer triangles than the goal.
@@ -536,7 +556,7 @@ void CollapseQueue::update_lines(std::uint32_t merged) {
 void CollapseQueue::look_again(std::uint32_t vertex) {
   refused_[vertex] = 0;
   ++looks_[vertex];
-  if (!piece_costs_.empty()) piece_costs_[vertex] = 0;
+  if (!piece_ends_.empty()) piece_ends_[vertex] = {};
   refresh(vertex);
   ranking_.for_edges_at(vertex, HUGE_VAL, [&](const RankedEdge& edge) { push(edge); });
 }

@@ -125,7 +125,8 @@ class CollapseQueue {
   void rank(double share);
   bool needs_room(std::uint64_t last) const;
   Stop run(const SimplifyGoal& goal, const Progress& progress);
-  void remember_piece(double cost);
+  void remember_piece(const QueuedEdge& queued, double cost);
+  bool is_queued_otherwise(const QueuedEdge& queued);
   double cost_of_piece(std::uint32_t a, std::uint32_t b) const;
   double cost_of_fewer(const QueuedEdge& queued, double cost, std::uint64_t excess) const;
   bool is_hopeless() const;
@@ -168,8 +169,14 @@ class CollapseQueue {
   std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
   std::vector<PastPlanes> past_;       // CollapseState::past
   std::vector<std::uint8_t> origins_;  // CollapseState::origins; empty where the topology is kept
-  // What an edge to another such vertex costs, if it would end its piece and was judged; else 0.
-  std::vector<double> piece_costs_;
+  // If an edge to another such vertex would end its piece and was judged: what all such edges of
+  // the piece cost, and the one that is queued for them.
+  struct PieceEnd {
+    double cost = 0;  // 0: not judged
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;  // 0: none is queued
+  };
+  std::vector<PieceEnd> piece_ends_;  // by vertex
   // 0 if no edge at the vertex is refused; else 1, plus one per change around the vertex since
   // then. Reset when its edges are ranked again.
   std::vector<std::uint8_t> refused_;

@@ -20,35 +20,79 @@ std::uint32_t vertex_now(const ShrinkingMesh& mesh, std::uint32_t v) {
   return v;
 }
 
+/// The squared distance to the nearest triangle at `vertex` that has none of the vertices
+/// `without`; infinite if there is none.
+double squared_at(const ShrinkingMesh& mesh, std::uint32_t vertex, Vec3 from,
+                  std::span<const std::uint32_t> without) {
+  const auto is_without = [&](std::uint32_t v) {
+    return std::binary_search(without.begin(), without.end(), v);
+  };
+  double least = HUGE_VAL;
+  if (is_without(vertex)) return least;
+  for (const Corner& c : mesh.adjacency->at(vertex)) {
+    if (is_without(c.next) || is_without(c.prev)) continue;
+    least = std::min(least, squared_distance(from, mesh.positions[vertex], mesh.positions[c.next],
+                                             mesh.positions[c.prev]));
+  }
+  return least;
+}
+
 }  // namespace
 
 double Surroundings::squared_distance(const ShrinkingMesh& mesh, const Lost& lost) {
   if (!index_) list_vertices(mesh);
-  if (lost.points.empty()) return search(mesh, lost.middle, lost.without);
+  const std::span<const Vec3> points =
+      lost.points.empty() ? std::span<const Vec3>(&lost.middle, 1) : lost.points;
+  const auto mean = [&](double sum) { return sum / static_cast<double>(points.size()); };
+  Found* const found = is_remembered(lost, points.size()) ? &found_for(mesh, lost) : nullptr;
+  if (found != nullptr && std::isfinite(found->sum)) {
+    double sum = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      sum += squared_at(mesh, found->vertices[i], points[i], lost.without);
+    }
+    if (sum == found->sum) return mean(sum);
+  }
+  nearest_.clear();
   double sum = 0;
-  for (const Vec3& point : lost.points) sum += search(mesh, point, lost.without);
-  return sum / static_cast<double>(lost.points.size());
+  for (const Vec3& point : points) {
+    Nearest nearest;
+    // What is nearest to one point is not far from the others.
+    for (const Nearest& other : nearest_) {
+      const double squared = squared_at(mesh, other.vertex, point, lost.without);
+      if (squared < nearest.squared) nearest = {squared, other.vertex};
+    }
+    search(mesh, point, lost.without, nearest);
+    nearest_.push_back(nearest);
+    sum += nearest.squared;
+  }
+  if (found != nullptr) {
+    found->sum = sum;
+    for (std::size_t i = 0; i < points.size(); ++i) found->vertices[i] = nearest_[i].vertex;
+  }
+  return mean(sum);
 }
 
-double Surroundings::search(const ShrinkingMesh& mesh, Vec3 from,
-                            std::span<const std::uint32_t> without) {
+bool Surroundings::is_remembered(const Lost& lost, std::size_t points) {
+  return !lost.without.empty() && points <= Found{}.vertices.size();
+}
+
+Surroundings::Found& Surroundings::found_for(const ShrinkingMesh& mesh, const Lost& lost) {
+  if (found_.size() < mesh.positions.size()) found_.resize(mesh.positions.size());
+  return found_[lost.without.front()];
+}
+
+/// Finds what is nearer than the nearest so far.
+void Surroundings::search(const ShrinkingMesh& mesh, Vec3 from,
+                          std::span<const std::uint32_t> without, Nearest& nearest) {
   if (passed_over_ > k_worth_an_index * vertices_.size()) drop_what_is_gone(mesh);
-  const auto is_without = [&](std::uint32_t v) {
-    return std::binary_search(without.begin(), without.end(), v);
-  };
-  return index_->least(from, [&](std::uint32_t point) {
+  const auto value = [&](std::uint32_t point) {
     const std::uint32_t v = vertex_now(mesh, vertices_[point]);
     passed_over_ += mesh.adjacency->count(v) > 0 ? 0 : 1;
-    double least = HUGE_VAL;
-    if (is_without(v)) return least;
-    for (const Corner& c : mesh.adjacency->at(v)) {
-      if (is_without(c.next) || is_without(c.prev)) continue;
-      least = std::min(least,
-                       meshfarm::squared_distance(from, mesh.positions[v], mesh.positions[c.next],
-                                                  mesh.positions[c.prev]));
-    }
-    return least;
-  });
+    const double squared = squared_at(mesh, v, from, without);
+    if (squared < nearest.squared) nearest = {squared, v};
+    return squared;
+  };
+  index_->least(from, nearest.squared, value);
 }
 
 /// Rebuilds the index without points that are gone: where most pieces go, a search would pass over

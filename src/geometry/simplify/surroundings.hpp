@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -36,13 +39,27 @@ class Surroundings {
   double squared_distance(const ShrinkingMesh& mesh, const Lost& lost);
 
  private:
-  double search(const ShrinkingMesh& mesh, Vec3 from, std::span<const std::uint32_t> without);
+  struct Nearest {
+    double squared = HUGE_VAL;
+    std::uint32_t vertex = 0;  // of the triangle
+  };
+  /// What was found for the points of a piece: it holds while it is there and as far away.
+  struct Found {
+    double sum = HUGE_VAL;
+    std::array<std::uint32_t, 3> vertices{};
+  };
+  static bool is_remembered(const Lost& lost, std::size_t points);
+  Found& found_for(const ShrinkingMesh& mesh, const Lost& lost);
+  void search(const ShrinkingMesh& mesh, Vec3 from, std::span<const std::uint32_t> without,
+              Nearest& nearest);
   void list_vertices(const ShrinkingMesh& mesh);
   void add_points_inside(const ShrinkingMesh& mesh, std::vector<Vec3>& points);
   void drop_what_is_gone(const ShrinkingMesh& mesh);
 
   std::vector<std::uint32_t> vertices_;  // of the points
   std::optional<PointIndex> index_;
+  std::vector<Found> found_;       // by the piece's lowest vertex
+  std::vector<Nearest> nearest_;   // to the points so far
   std::uint64_t passed_over_ = 0;  // points of pieces that are gone, since the index was made
 };
 

@@ -52,8 +52,10 @@ TEST_CASE("point index: the least value of those that are near") {
     };
     double least = HUGE_VAL;
     for (std::uint32_t i = 0; i < points.size(); ++i) least = std::min(least, value(i));
-    CHECK(index.least(from, value) == doctest::Approx(least));
+    CHECK(index.least(from, HUGE_VAL, value) == doctest::Approx(least));
+    CHECK(index.least(from, 2 * least, value) == doctest::Approx(least));
+    CHECK(index.least(from, least / 2, value) == least / 2);
   }
-  CHECK(std::isinf(index.least({}, [](std::uint32_t) { return HUGE_VAL; })));
-  CHECK(std::isinf(PointIndex({}).least({}, [](std::uint32_t) { return 1.0; })));
+  CHECK(std::isinf(index.least({}, HUGE_VAL, [](std::uint32_t) { return HUGE_VAL; })));
+  CHECK(std::isinf(PointIndex({}).least({}, HUGE_VAL, [](std::uint32_t) { return 1.0; })));
 }

@@ -100,6 +100,28 @@ TEST_CASE("the nearest that is left is found, however many pieces are gone") {
   }
 }
 
+TEST_CASE("what was found holds until the nearest is gone") {
+  Mesh mesh = lonely_triangles(300);
+  std::vector<std::uint32_t> target(mesh.positions.size());
+  std::iota(target.begin(), target.end(), 0U);
+  Adjacency adjacency;
+  Surroundings remembers;
+  while (!mesh.triangles.empty()) {
+    adjacency.build(mesh.triangles, mesh.positions.size(), mesh.columns);
+    const ShrinkingMesh shrinking{mesh.positions, target, &adjacency};
+    Surroundings fresh;
+    for (const Triangle& t : mesh.triangles) {
+      const std::vector<std::uint32_t> without(t.begin(), t.end());
+      std::vector<Vec3> corners;
+      for (const std::uint32_t v : t) corners.push_back(mesh.positions[v]);
+      const Surroundings::Lost lost{{}, corners, without};
+      const double wanted = fresh.squared_distance(shrinking, lost);
+      for (int i = 0; i < 2; ++i) CHECK(remembers.squared_distance(shrinking, lost) == wanted);
+    }
+    mesh.triangles.resize(2 * mesh.triangles.size() / 3);
+  }
+}
+
 TEST_CASE("what is long is as far as its points are, in the mean") {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {9, 0, 0}, {0, 1, 0}, {0, 0, 2}, {0, 1, 2}, {1, 0, 2}};
