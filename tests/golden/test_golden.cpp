@@ -187,6 +187,7 @@ std::vector<Watched> all_watched() {
       kernel("foam-keep", Shape::foam, {.topology = TopologyMode::keep}, k_float, 2000),
       kernel("foam-simplify", Shape::foam, {.topology = TopologyMode::simplify}, k_float, 200),
       kernel("dust", Shape::dust, {}, k_float, 1000),
+      kernel("soup", Shape::soup, {}, k_float, 500),
       kernel("terrain", Shape::terrain, {}, k_float, 200),
       kernel("terrain-border", Shape::terrain, {.preserve_border = true}, k_float, 1000),
       kernel("block-creases", Shape::block, {.crease_angle = 40}, k_float, 1000),
