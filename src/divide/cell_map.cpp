@@ -27,12 +27,23 @@ unsigned grid_bits(std::uint32_t parts) {
   return bits;
 }
 
+/// The box of a surface has six sides of cells, so smooth surfaces have fewer cells than this. What
+/// fills space, as foam does, would have a cell for every vertex or two: its grid is coarsened.
+std::size_t most_cells(unsigned bits) {
+  constexpr std::size_t k_sides = 8;
+  constexpr std::size_t k_most = 1 << 20;
+  return std::min(k_most, k_sides << (2 * bits));
+}
+
+CellTreeOptions options_of_tree(const CellMapOptions& options) {
+  const unsigned bits = grid_bits(options.parts);
+  return {bits, options.parts, options.weld, most_cells(bits)};
+}
+
 }  // namespace
 
 CellMap::CellMap(const Box& box, const CellMapOptions& options)
-    : options_(options),
-      cells_(box,
-             {.bits = grid_bits(options.parts), .parts = options.parts, .weld = options.weld}) {}
+    : options_(options), cells_(box, options_of_tree(options)) {}
 
 void CellMap::count(std::span<const Vec3> batch) {
   for (const Vec3& p : batch) {

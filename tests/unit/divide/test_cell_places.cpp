@@ -46,6 +46,20 @@ CellMap divided_map(const std::vector<Vec3>& points, std::uint32_t parts) {
 
 }  // namespace
 
+TEST_CASE("points that fill space have no more cells than a surface may have") {
+  std::vector<Vec3> points;
+  constexpr int k_side = 40;
+  for (int i = 0; i < k_side * k_side * k_side; ++i) {
+    points.push_back({1.0 * (i % k_side), 1.0 * (i / k_side % k_side), 1.0 * (i / k_side / k_side)});
+  }
+  const std::string bytes = divided_map(points, 2).encode(CellTree::Which::places);
+  ByteReader in(bytes, "cells");
+  CHECK(in.get<std::uint32_t>() == 2);
+  const std::size_t cells = CellTree::get_places(in).keys.size();
+  // 32 x 32 x 32 cells would be 32 times as many as a side has.
+  CHECK(cells == 16 * 16 * 16);
+}
+
 TEST_CASE("a table of keys finds each key of several grids, and no other") {
   std::mt19937_64 random(3);
   std::vector<std::uint64_t> keys{0, 1, 7, 4'000'000'000};
