@@ -100,7 +100,8 @@ class LadderBuilder {
     snapshot(first);
     if (first != k_input_level) return first + 1;
     // A first step by count finds the level to begin at; little can be collapsed below it.
-    reduce({.triangles = simplifier_.triangles() - simplifier_.triangles() / 10});
+    reduce({.triangles = simplifier_.triangles() - simplifier_.triangles() / 10,
+            .last_triangles = std::max<std::uint64_t>(1, floor())});
     return reached();
   }
 
@@ -113,21 +114,22 @@ class LadderBuilder {
   bool may_give_up_topology() const {
     return parameters_.lines.topology == TopologyMode::keep_while_fair;
   }
+  /// No rung has fewer triangles.
+  std::uint64_t floor() const { return parameters_.share_triangles / k_shares_per_floor; }
   std::int32_t reached() const { return level_of(simplifier_.pass_cost(), parameters_.cost_unit); }
 
   void climb(std::int32_t level) {
-    const std::uint64_t floor = parameters_.share_triangles / k_shares_per_floor;
     for (; level <= k_top_level; ++level) {
-      if (simplifier_.triangles() <= floor) return;
+      if (simplifier_.triangles() <= floor()) return;
       if (simplifier_.free_triangles() == 0) return;
-      reduce({.triangles = floor, .max_cost = level_cost(level, parameters_.cost_unit)});
+      reduce({.triangles = floor(), .max_cost = level_cost(level, parameters_.cost_unit)});
       if (simplifier_.is_held_by_topology()) return;
       if (simplifier_.triangles() < result_.rungs().back().triangles) {
         snapshot(level);
       } else {
         result_.set_refused(simplifier_.refused_by_topology());
       }
-      if (is_enough(floor)) end_ = LadderEnd::enough;
+      if (is_enough()) end_ = LadderEnd::enough;
       if (is_refused_too_much()) end_ = LadderEnd::refusals;
       if (end_ != LadderEnd::floor) return;
     }
@@ -145,10 +147,10 @@ class LadderBuilder {
   /// Whether the next rung would have less than what is wanted: it and those after it are not made.
   /// If many vertices are locked, counts fall anyway. If the topology is kept at any cost, some
   /// parts may have to make up for others.
-  bool is_enough(std::uint64_t floor) const {
+  bool is_enough() const {
     const std::uint64_t left = simplifier_.triangles();
     const bool may_be_stuck = parameters_.lines.topology == TopologyMode::keep;
-    return left > floor && left <= parameters_.end_triangles &&
+    return left > floor() && left <= parameters_.end_triangles &&
            !(may_be_stuck && simplifier_.is_slowed_by_topology()) &&
            static_cast<double>(simplifier_.free_triangles()) >
                k_mostly_free * static_cast<double>(left);
