@@ -32,6 +32,8 @@ constexpr std::uint8_t k_climb_version = 11;
 constexpr std::uint64_t k_most_climb_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 constexpr double k_mostly_free = 0.5;  // of triangles
+/// A rung with more than this share of the one before is kept only if it is the last.
+constexpr double k_worth_a_rung = 0.98;
 
 /// A ladder ends where this many collapses per triangle are expected to be refused: some multiple
 /// of what is fair, as the prediction is made from further away than in the sink.
@@ -39,7 +41,7 @@ constexpr double k_most_refused = 4;
 
 enum class PartSource : std::uint8_t { file, bundles, rung };
 
-/// Climbs the levels and keeps a snapshot at each level where the mesh changed.
+/// Climbs the levels and keeps a snapshot at each level where the mesh has become smaller.
 class LadderBuilder {
  public:
   LadderBuilder(Part part, std::vector<std::uint32_t> opened, std::vector<SurfaceSamples> samples,
@@ -119,20 +121,29 @@ class LadderBuilder {
   std::int32_t reached() const { return level_of(simplifier_.pass_cost(), parameters_.cost_unit); }
 
   void climb(std::int32_t level) {
-    for (; level <= k_top_level; ++level) {
-      if (simplifier_.triangles() <= floor()) return;
-      if (simplifier_.free_triangles() == 0) return;
+    for (; level <= k_top_level && may_go_on(); ++level) {
       reduce({.triangles = floor(), .max_cost = level_cost(level, parameters_.cost_unit)});
       if (simplifier_.is_held_by_topology()) return;
-      if (simplifier_.triangles() < result_.rungs().back().triangles) {
+      if (is_enough()) end_ = LadderEnd::enough;
+      if (is_refused_too_much()) end_ = LadderEnd::refusals;
+      const bool is_last = end_ != LadderEnd::floor || !may_go_on() || level == k_top_level;
+      if (is_worth_a_rung(is_last)) {
         snapshot(level);
       } else {
         result_.set_refused(simplifier_.refused_by_topology());
       }
-      if (is_enough()) end_ = LadderEnd::enough;
-      if (is_refused_too_much()) end_ = LadderEnd::refusals;
-      if (end_ != LadderEnd::floor) return;
+      if (is_last) return;
     }
+  }
+  bool may_go_on() const {
+    return simplifier_.triangles() > floor() && simplifier_.free_triangles() > 0;
+  }
+
+  /// Surfaces with large flat parts have nearly as many triangles at many levels as at the first.
+  bool is_worth_a_rung(bool is_last) const {
+    const auto left = static_cast<double>(simplifier_.triangles());
+    const auto before = static_cast<double>(result_.rungs().back().triangles);
+    return left < (is_last ? 1 : k_worth_a_rung) * before;
   }
 
   bool is_refused_too_much() const {
