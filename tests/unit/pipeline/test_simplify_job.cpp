@@ -99,6 +99,29 @@ class ClimbBench {
 
 }  // namespace
 
+TEST_CASE("a ladder has no rungs that are hardly smaller than the ones before, except the last") {
+  // The small spheres have 3 % of the triangles, and lose them over many levels.
+  Part part;
+  part.mesh = test::icosphere(5);
+  for (Vec3& p : part.mesh.positions) p = p * 100;
+  for (int i = 0; i < 2; ++i) {
+    Mesh sphere = test::icosphere(2);
+    for (Vec3& p : sphere.positions) p = p * 0.01 + Vec3{200.0 + i, 0, 0};
+    test::append(part.mesh, sphere);
+  }
+  part.boundary_vertices = k_boundary;
+  part.positions = PositionType::float64;
+  const ClimbBench bench(part);
+  const std::vector<Rung> rungs =
+      bench.climb(TopologyMode::keep, 0, 0, part.mesh.triangles.size() - 100).summary.rungs;
+  REQUIRE(rungs.size() > 3);
+  for (std::size_t i = 1; i + 1 < rungs.size(); ++i) {
+    CAPTURE(i);
+    CHECK(static_cast<double>(rungs[i].triangles) <
+          0.98 * static_cast<double>(rungs[i - 1].triangles));
+  }
+}
+
 TEST_CASE("a ladder that may have to give up its topology begins where nothing was refused") {
   const ClimbBench bench(part_of_spheres(60));
   const ClimbedPart kept = bench.climb(TopologyMode::keep_while_fair);
