@@ -33,7 +33,7 @@ constexpr std::uint64_t k_most_climb_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 constexpr double k_mostly_free = 0.5;  // of triangles
 /// A rung with more than this share of the one before is kept only if it is the last.
-constexpr double k_worth_a_rung = 0.98;
+constexpr double k_most_of_rung = 0.98;
 
 /// A ladder ends where this many collapses per triangle are expected to be refused: some multiple
 /// of what is fair, as the prediction is made from further away than in the sink.
@@ -143,7 +143,7 @@ class LadderBuilder {
   bool is_worth_a_rung(bool is_last) const {
     const auto left = static_cast<double>(simplifier_.triangles());
     const auto before = static_cast<double>(result_.rungs().back().triangles);
-    return left < (is_last ? 1 : k_worth_a_rung) * before;
+    return left < (is_last ? 1 : k_most_of_rung) * before;
   }
 
   bool is_refused_too_much() const {

@@ -50,7 +50,8 @@ TEST_CASE("points that fill space have no more cells than a surface may have") {
   std::vector<Vec3> points;
   constexpr int k_side = 40;
   for (int i = 0; i < k_side * k_side * k_side; ++i) {
-    points.push_back({1.0 * (i % k_side), 1.0 * (i / k_side % k_side), 1.0 * (i / k_side / k_side)});
+    points.push_back(
+        {1.0 * (i % k_side), 1.0 * (i / k_side % k_side), 1.0 * (i / k_side / k_side)});
   }
   const std::string bytes = divided_map(points, 2).encode(CellTree::Which::places);
   ByteReader in(bytes, "cells");
