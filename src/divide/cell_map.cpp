@@ -27,17 +27,15 @@ unsigned grid_bits(std::uint32_t parts) {
   return bits;
 }
 
-/// The box of a surface has six sides of cells, so smooth surfaces have fewer cells than this. What
-/// fills space, as foam does, would have a cell for every vertex or two: its grid is coarsened.
-std::size_t most_cells(unsigned bits) {
-  constexpr std::size_t k_sides = 8;
-  constexpr std::size_t k_most = 1 << 20;
-  return std::min(k_most, k_sides << (2 * bits));
-}
-
+/// The box of a surface has six sides of cells, so smooth surfaces have fewer than k_sides times
+/// the cells of a side. What fills space, as foam does, would have a cell for every vertex or two:
+/// its grid is coarsened.
 CellTreeOptions options_of_tree(const CellMapOptions& options) {
-  const unsigned bits = grid_bits(options.parts);
-  return {bits, options.parts, options.weld, most_cells(bits)};
+  constexpr std::size_t k_sides = 8;
+  CellTreeOptions tree{
+      .bits = grid_bits(options.parts), .parts = options.parts, .weld = options.weld};
+  tree.most_cells = std::min(tree.most_cells, k_sides << (2 * tree.bits));
+  return tree;
 }
 
 }  // namespace

@@ -101,7 +101,8 @@ class LadderBuilder {
     const std::int32_t first = parameters_.from ? parameters_.from->level : k_input_level;
     snapshot(first);
     if (first != k_input_level) return first + 1;
-    // A first step by count finds the level to begin at; little can be collapsed below it.
+    // A first step by count finds the level to begin at; little can be collapsed below it. It is
+    // as far from the end as the levels are: if it came to strict order, they would stay in it.
     reduce({.triangles = simplifier_.triangles() - simplifier_.triangles() / 10,
             .last_triangles = std::max<std::uint64_t>(1, floor())});
     return reached();
