@@ -171,7 +171,9 @@ std::uint64_t RankedPasses::run(const SimplifyGoal& goal, const Pass& pass) {
       if (limits.triangles == 0) break;
     }
   }
-  const double paid = std::isfinite(reached) ? reached : mesh_.max_cost();
+  double paid = std::isfinite(reached) ? reached : mesh_.max_cost();
+  // What is refused may rank as if it cost nothing.
+  if (refused_for_topology_ > collapses_) paid = std::max(paid, mesh_.pass_cost());
   const std::uint64_t removed = excess - limits.triangles;
   mesh_.end_pass(removed, paid);
   if (removed > 0) renumber_drifts();

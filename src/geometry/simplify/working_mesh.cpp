@@ -237,7 +237,7 @@ void WorkingMesh::take(const CollapseQueue& queue) {
   pieces_.clear();
   adjacency_is_current_ = false;
   max_cost_ = std::max(max_cost_, queue.max_cost());
-  pass_cost_ = queue.last_cost();
+  pass_cost_ = std::max(pass_cost_, queue.last_cost());
 }
 
 }  // namespace meshfarm

@@ -134,6 +134,20 @@ TEST_CASE("no collapse costs more than max_cost") {
   CHECK(before > 8);
 }
 
+TEST_CASE("the level reached is that of what has collapsed, not of what is refused") {
+  Mesh mesh;
+  for (int i = 0; i < 200; ++i) append(mesh, test::octahedron(), {3.0 * i, 0, 0});
+  // Tetrahedra are left, whose edges rank as if they cost nothing.
+  for (const TopologyMode topology : {TopologyMode::keep_while_fair, TopologyMode::simplify}) {
+    Simplifier simplifier(mesh, {.lines = {.topology = topology}});
+    simplifier.reduce({.triangles = 790, .in_passes = true});
+    CHECK(simplifier.triangles() < 900);
+    CHECK(simplifier.pass_cost() > simplifier.max_cost() / 2);
+    simplifier.reduce({.triangles = 780});
+    CHECK(simplifier.pass_cost() > simplifier.max_cost() / 16);
+  }
+}
+
 TEST_CASE("the level reached is that of the goal, not of the last pass") {
   Simplifier simplifier(sphere(5), {});
   simplifier.reduce({1001});
