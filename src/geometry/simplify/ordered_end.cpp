@@ -17,6 +17,7 @@
 #include "geometry/simplify/collapse_guard.hpp"
 #include "geometry/simplify/crossing_guard.hpp"
 #include "geometry/simplify/simplify_rank.hpp"
+#include "geometry/simplify/topology_floor.hpp"
 
 namespace meshfarm {
 namespace {
@@ -147,6 +148,10 @@ OrderedEnd::OrderedEnd(OrderedEnd&&) noexcept = default;
 
 std::optional<double> OrderedEnd::reduce(const SimplifyGoal& goal,
                                          const std::function<bool(std::uint64_t)>& progress) {
+  if (!simplifies_topology() && cannot_keep(goal)) {
+    trial_ = std::make_unique<Trial>(mesh_, TopologyMode::simplify, bound_);
+    taken_ = UINT64_MAX;
+  }
   if (!has_begun()) trial_ = std::make_unique<Trial>(mesh_, topology_, bound_);
   const double paid_before = trial_->queue.paid();
   const bool may_give_up = topology_ == TopologyMode::automatic && !simplifies_topology();
@@ -202,6 +207,15 @@ std::uint64_t OrderedEnd::refused_by_topology() const {
 
 bool OrderedEnd::is_hampered() const {
   return has_begun() && refused_by_topology() > trial_->queue.collapses();
+}
+
+/// Whether the goal has too few triangles for the topology. If so, keeping it need not be tried.
+bool OrderedEnd::cannot_keep(const SimplifyGoal& goal) const {
+  if (topology_ != TopologyMode::automatic || bound_ != nullptr) return false;
+  if (std::isfinite(goal.max_cost)) return false;
+  Adjacency adjacency;
+  adjacency.build(mesh_.mesh().triangles, mesh_.vertices());
+  return least_triangles(mesh_.flags(), adjacency) > goal.triangles + 1;
 }
 
 /// Being held may be a false alarm: on flat plates, refused edges cost nothing and are judged again

@@ -40,6 +40,7 @@ class OrderedEnd {
   struct Trial;
   struct Rival;
 
+  bool cannot_keep(const SimplifyGoal& goal) const;
   bool is_held_near(const SimplifyGoal& goal) const;
   bool must_decide(const SimplifyGoal& goal);
   bool refuses_much() const;
