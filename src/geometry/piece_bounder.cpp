@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/piece_bounder.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace meshfarm {
@@ -15,6 +18,15 @@ constexpr double k_relative_rounding = 0x1p-44;
 /// longer, 0.5 the same time.
 constexpr double k_near_enough = 0.25;
 
+/// Pieces shorter than this share of the triangle below them, and longer than this many targets,
+/// are cut along its sides. Flat surfaces then need a few pieces per triangle below, however small
+/// the target is; halves would have to become as small as the target all along these sides. With
+/// larger pieces, or from 16 targets on, CT and CAD with 0.01 % take up to twice the time.
+constexpr double k_shorter = 0.5;
+constexpr double k_long = 64;
+/// Cuts leave at least this share of a side.
+constexpr double k_least_cut = 1e-3;
+
 /// The squared distance to the segment's nearest point.
 double squared_above(Vec3 p, Vec3 a, Vec3 b) {
   const Vec3 ab = b - a;
@@ -23,17 +35,54 @@ double squared_above(Vec3 p, Vec3 a, Vec3 b) {
   return std::min(squared_length(p - (a + ab * along)), squared_length(p - a));
 }
 
-std::size_t side_to_cut(const CornerPoints& corners) {
-  std::size_t longest = 0;
+PieceCut in_halves(const CornerPoints& corners) {
+  PieceCut cut;
   double most = -1;
   for (std::size_t i = 0; i < 3; ++i) {
     const double squared = squared_length(corners[(i + 1) % 3] - corners[i]);
     if (squared > most) {
       most = squared;
-      longest = i;
+      cut.side = i;
     }
   }
-  return longest;
+  return cut;
+}
+
+/// Whether no corner is farther from the plane of `below`.
+bool is_flat_over(const CornerPoints& corners, const CornerPoints& below, double most) {
+  const Vec3 normal = cross(below[1] - below[0], below[2] - below[0]);
+  const double limit = most * length(normal);
+  return std::all_of(corners.begin(), corners.end(),
+                     [&](Vec3 p) { return std::abs(dot(p - below[0], normal)) <= limit; });
+}
+
+/// Where the corners lie on both sides of a side of `below`, seen along its normal: a place above
+/// the line of the side that most of the piece reaches across.
+std::optional<PieceCut> along_sides(const CornerPoints& corners, const CornerPoints& below) {
+  const Vec3 normal = cross(below[1] - below[0], below[2] - below[0]);
+  std::optional<PieceCut> cut;
+  double farthest = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 out = cross(below[(i + 1) % 3] - below[i], normal);
+    const double squared = squared_length(out);
+    if (!(squared > 0)) continue;
+    std::array<double, 3> beyond;
+    for (std::size_t k = 0; k < 3; ++k) {
+      beyond[k] = dot(corners[k] - below[i], out) / std::sqrt(squared);
+    }
+    const double reach = std::min(*std::max_element(beyond.begin(), beyond.end()),
+                                  -*std::min_element(beyond.begin(), beyond.end()));
+    if (!(reach > farthest)) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double here = beyond[k], there = beyond[(k + 1) % 3];
+      const double share = here / (here - there);
+      if (!((here > 0) != (there > 0))) continue;
+      if (!(share > k_least_cut && share < 1 - k_least_cut)) continue;
+      farthest = reach;
+      cut = {k, share};
+    }
+  }
+  return cut;
 }
 
 }  // namespace
@@ -112,6 +161,16 @@ void PieceBounder::look_at(Piece piece) {
   std::push_heap(open_.begin(), open_.end());
 }
 
+PieceCut PieceBounder::cut_of(const Piece& piece) const {
+  const CornerPoints below = corners_of(to_.positions, to_.triangles[piece.guess]);
+  const double longest = longest_side(piece.corners);
+  if (longest > k_long * target() && longest < k_shorter * longest_side(below) &&
+      is_flat_over(piece.corners, below, target())) {
+    if (const auto cut = along_sides(piece.corners, below)) return *cut;
+  }
+  return in_halves(piece.corners);
+}
+
 DistanceBounds PieceBounder::bound(const CornerPoints& corners, const HausdorffOptions& options,
                                    std::uint32_t& guess) {
   options_ = options;
@@ -124,11 +183,11 @@ DistanceBounds PieceBounder::bound(const CornerPoints& corners, const HausdorffO
     std::pop_heap(open_.begin(), open_.end());
     const Piece top = open_.back();
     open_.pop_back();
-    const std::size_t side = side_to_cut(top.corners);
+    const auto [side, share] = cut_of(top);
     const Vec3 from = top.corners[side], to = top.corners[(side + 1) % 3];
-    const Vec3 opposite = top.corners[(side + 2) % 3], middle = from * 0.5 + to * 0.5;
-    look_at({{from, middle, opposite}, top.upper, top.guess});
-    look_at({{middle, to, opposite}, top.upper, top.guess});
+    const Vec3 opposite = top.corners[(side + 2) % 3], at = from * (1 - share) + to * share;
+    look_at({{from, at, opposite}, top.upper, top.guess});
+    look_at({{at, to, opposite}, top.upper, top.guess});
     guess = top.guess;
   }
   if (!open_.empty()) bounds_.upper = std::max(bounds_.upper, open_.front().upper);

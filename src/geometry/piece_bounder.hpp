@@ -37,6 +37,12 @@ double farthest_corner(const CornerPoints& corners, const CornerPoints& triangle
 /// The rounding error of distances between points with such coordinates.
 double rounding_of(const Box& box);
 
+/// Where to cut a piece in two: a place on the side from this corner to the next.
+struct PieceCut {
+  std::size_t side = 0;
+  double share = 0.5;
+};
+
 /// Bounds the distance of the farthest point of a triangle to a surface, by pieces: undecided
 /// pieces are cut in two.
 class PieceBounder {
@@ -60,6 +66,7 @@ class PieceBounder {
   double target() const;
   void look_at(Piece piece);
   bool is_settled(Piece& piece);
+  PieceCut cut_of(const Piece& piece) const;
   double farthest_from(const Piece& piece, std::uint32_t triangle, double most) const {
     return farthest_corner(piece.corners, corners_of(to_.positions, to_.triangles[triangle]), most);
   }

@@ -94,6 +94,15 @@ TEST_CASE("hausdorff: the same plane in other triangles is at no distance") {
   CHECK(bounds_of(fine, fine).upper < 1e-12);
 }
 
+TEST_CASE("hausdorff: a flat surface is proven to lie within any distance of its plane") {
+  const Mesh plane = test::grid(16, 16);
+  for (const double distance : {1e-3, 1e-6, 1e-9, 1e-11}) {
+    CHECK(is_within(put(large_triangle(14), {0.3, 0.6, 0}), plane, distance));
+    CHECK(is_within(put(large_triangle(14), {0.3, 0.6, distance / 2}), plane, distance));
+    CHECK(!is_within(put(large_triangle(14), {0.3, 0.6, 2 * distance}), plane, distance));
+  }
+}
+
 TEST_CASE("hausdorff: parallel sheets are as far apart as they are") {
   const Mesh sheet = test::grid(12, 9);
   for (const double height : {0.01, 0.3, 40.0}) {
