@@ -2,14 +2,18 @@
 // SPDX-License-Identifier: MIT
 //
 // The input:
-//   header = ["ST"] ["C"] ["N"] "OFF" vertices faces [edges], on one line or more
+//   header = ["ST"] ["C"] ["N"] "OFF" vertices faces [edges], on one line or more; the letters
+//            before "OFF" in any order
 //   vertex = x y z [normal, of N] [colour of 3 or 4 values, of C] [s t, of ST]
+//            x y z colour of 4 values, normal, [s t], if N comes before C: MeshLab writes so
 //   face   = count corners [any values]
 // '#' begins a comment. "OFF8 6 12" is read as "OFF 8 6 12": ModelNet is full of such files.
 #include "off_header.hpp"
 
 #include <algorithm>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <meshfarm/util/errors.hpp>
 
@@ -25,8 +29,9 @@ struct Keyword {
   bool has_texture = false;
   bool has_colour = false;
   bool has_normal = false;
-  bool has_fourth = false;      // homogeneous
-  bool has_dimensions = false;  // the file gives the number of dimensions
+  bool has_normal_last = false;  // after the colour
+  bool has_fourth = false;       // homogeneous
+  bool has_dimensions = false;   // the file gives the number of dimensions
   std::size_t size = 0;
 };
 
@@ -38,9 +43,15 @@ std::optional<Keyword> keyword_of(std::string_view text) {
     left.remove_prefix(part.size());
     return true;
   };
-  word.has_texture = take("ST");
-  word.has_colour = take("C");
-  word.has_normal = take("N");
+  for (bool any = true; any;) {
+    any = false;
+    for (auto [part, has] : {std::pair("ST", &word.has_texture), std::pair("C", &word.has_colour),
+                             std::pair("N", &word.has_normal)}) {
+      if (*has || !take(part)) continue;
+      *has = any = true;
+      word.has_normal_last = word.has_normal && (word.has_normal_last || !word.has_colour);
+    }
+  }
   word.has_fourth = take("4");
   word.has_dimensions = take("n");
   if (!take("OFF")) return std::nullopt;
@@ -103,13 +114,17 @@ class OffHeaderParser {
   }
 
   /// Whether no colour at the start of the file has a decimal point: then colours are whole numbers
-  /// up to 255, else numbers up to 1.
-  bool has_levels() {
+  /// up to 255, else numbers up to 1. `before` and `after`: the values of other kinds in a line.
+  bool has_levels(std::size_t before, std::size_t after) {
     const char* start = scanner_.at();
     bool any = false;
+    std::vector<std::string_view> values;
     for (int lines = 0; lines < k_lines_looked_at && scanner_.next_value(); ++lines) {
-      for (int value = 0; value < 3 && scanner_.has_value(); ++value) scanner_.word();
-      while (scanner_.has_value()) any = scanner_.word().find('.') != std::string_view::npos || any;
+      values.clear();
+      while (scanner_.has_value()) values.push_back(scanner_.word());
+      for (std::size_t i = before; i + after < values.size(); ++i) {
+        any = any || values[i].find('.') != std::string_view::npos;
+      }
       scanner_.next_line();
     }
     scanner_.go_to(start);
@@ -121,14 +136,21 @@ class OffHeaderParser {
     element.role = PlyRole::vertices;
     element.axes = {0, 1, 2};
     std::vector<std::string> names = {"x", "y", "z"};
-    if (word.has_normal) names.insert(names.end(), {"nx", "ny", "nz"});
+    const bool has_normal_last = word.has_normal_last && word.has_colour;
+    const auto add_normal = [&] { names.insert(names.end(), {"nx", "ny", "nz"}); };
+    if (word.has_normal && !has_normal_last) add_normal();
+    const std::size_t first_colour = names.size();
     if (word.has_colour) names.insert(names.end(), {"red", "green", "blue"});
+    if (has_normal_last) names.emplace_back("alpha");
+    const std::size_t end_of_colour = names.size();
+    if (has_normal_last) add_normal();
     if (word.has_texture) names.insert(names.end(), {"s", "t"});
-    const bool is_whole = word.has_colour && !word.has_normal && !word.has_texture && has_levels();
-    for (const std::string& name : names) {
-      const bool is_level = is_whole && element.properties.size() >= 3;
-      element.properties.push_back(
-          {.name = name, .type = is_level ? PlyType::uint8 : PlyType::float32, .count_type = {}});
+    const bool is_whole = word.has_colour && has_levels(first_colour, names.size() - end_of_colour);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const bool is_level = is_whole && i >= first_colour && i < end_of_colour;
+      element.properties.push_back({.name = names[i],
+                                    .type = is_level ? PlyType::uint8 : PlyType::float32,
+                                    .count_type = {}});
     }
     // A colour may have an alpha.
     element.more = word.has_colour ? MoreValues::known : MoreValues::told;

@@ -56,7 +56,14 @@ TEST_CASE("normals, colours and texture coordinates of an OFF are named") {
   CHECK(names("COFF", " 255 0 0 255") == Words{"red1", "green1", "blue1"});
   CHECK(names("COFF", " 0.5 0.5 0.5") == Words{"red4", "green4", "blue4"});
   CHECK(names("NOFF", " 0 0 1") == Words{"nx4", "ny4", "nz4"});
-  CHECK(names("CNOFF", " 0 0 1 1 1 1 1").size() == 6);
+  const Words levels{"nx4", "ny4", "nz4", "red1", "green1", "blue1"};
+  const Words shares{"nx4", "ny4", "nz4", "red4", "green4", "blue4"};
+  CHECK(names("CNOFF", " 0 0.5 1.0 1 1 1 1") == levels);
+  const Words normal_last{"red1", "green1", "blue1", "alpha1", "nx4", "ny4", "nz4"};
+  CHECK(names("NCOFF", " 10 20 30 255 0 0.5 1.0") == normal_last);
+  CHECK(names("CNOFF", " 0 0 1 1 0.5 1 1") == shares);
+  CHECK(names("NCSTOFF", " 9 8 7 255 0 0 1 0.5 0.5").size() == 9);
+  CHECK(names("CSTNOFF", " 0 0 1 9 8 7 0.5 0.5").size() == 8);
   CHECK(names("STOFF", " 0 0") == Words{"vertex.s", "vertex.t"});
   CHECK(stderr_of([&] { names("COFF", " 255 0 0 255"); }).empty());
 }
