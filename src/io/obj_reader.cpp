@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The input:
-//   "v" x y z [w] [r g b]
+//   "v" x y z [w | r g b [a]]
 //   "f" { v["/"[vt]["/"[vn]]] }   from 1, or backwards from the last vertex before the line: -1
 //   "vt" u [v]                    if textures are kept
 //   "usemtl" name                 of the faces that follow; or "g" or "o", if there is none
@@ -278,12 +278,11 @@ class ObjSource final : public TextSource {
     for (; scanner.next_value(); scanner.next_line()) {
       if (scanner.word() != "v") continue;
       made.points.push_back(read_position(scanner, wide));
-      std::array<double, 4> more{};
+      std::array<double, 3> colour{};
       std::size_t count = 0;
-      while (count < more.size() && scanner.has_value()) more[count++] = scanner.real(true);
-      for (std::size_t i = 0; i < 3; ++i) {
-        const double level = count < 3 ? 1.0 : more[count - 3 + i];
-        made.values.push_back(static_cast<float>(level * 255));
+      while (count < colour.size() && scanner.has_value()) colour[count++] = scanner.real(true);
+      for (const double level : colour) {
+        made.values.push_back(static_cast<float>((count < 3 ? 1.0 : level) * 255));
       }
     }
   }

@@ -84,11 +84,12 @@ void ObjStatements::count(std::string_view text, char line_end, FacePlaces place
     const std::string_view word = scanner.word();
     if (word == "v") {
       ++vertices;
-      if (has_colours && has_weights) continue;
+      if (has_colours && has_weights && has_alphas) continue;
       std::size_t values = 0;
       for (; scanner.has_value(); scanner.word()) ++values;
       has_colours = has_colours || values >= 6;
-      has_weights = has_weights || values == 4 || values == 7;
+      has_weights = has_weights || values == 4;
+      has_alphas = has_alphas || values == 7;
     } else if (word == "f") {
       ++faces;
       materials.face();
@@ -149,6 +150,7 @@ void ObjStatements::add(const ObjStatements& next) {
   objects.add(next.objects);
   has_colours = has_colours || next.has_colours;
   has_weights = has_weights || next.has_weights;
+  has_alphas = has_alphas || next.has_alphas;
   has_places = has_places || next.has_places;
   vertices += next.vertices;
   faces += next.faces;
@@ -165,6 +167,7 @@ std::vector<std::string> ObjStatements::skipped_names(
   std::vector<std::string> names;
   if (has_colours && !keeps_colours) names.emplace_back("vertex.colour");
   if (has_weights) names.emplace_back("vertex.weight");
+  if (has_alphas) names.emplace_back("vertex.alpha");
   for (const auto& [word, count] : others) {
     if (std::find(kept.begin(), kept.end(), word) != kept.end()) continue;
     const auto known = std::find_if(k_names.begin(), k_names.end(),

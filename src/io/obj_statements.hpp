@@ -25,6 +25,7 @@ struct ObjStatements {
   bool has_places = false;    // a face has texture coordinates; only if looked for
   bool has_colours = false;   // a vertex has a colour
   bool has_weights = false;
+  bool has_alphas = false;
   std::vector<std::pair<std::string, std::uint64_t>> others;  // by their first words
   std::vector<std::string> libraries;                         // what follows "mtllib"; limited
   ObjNames materials;                                         // what follows "usemtl"

@@ -19,7 +19,10 @@ namespace meshfarm {
 class TextScanner {
  public:
   TextScanner(std::string_view text, char line_end)
-      : at_(text.data()), end_(text.data() + text.size()), line_end_(line_end) {}
+      : at_(text.data()), end_(text.data() + text.size()), line_end_(line_end) {
+    constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";  // some editors begin UTF-8 so
+    if (text.starts_with(k_byte_order_mark)) at_ += k_byte_order_mark.size();
+  }
 
   bool at_end() const { return at_ == end_; }
   const char* at() const { return at_; }

@@ -104,7 +104,7 @@ TEST_CASE("colours as floats stay floats in OFF, and OBJ vertices without one ar
   for (const float value : obj.all.values) {
     rounded.push_back(rounded_to(ChannelType::uint8, value));
   }
-  CHECK(rounded == std::vector<float>{255, 0, 51, 255, 255, 255, 0, 255, 0, 255, 255, 255});
+  CHECK(rounded == std::vector<float>{255, 0, 51, 255, 255, 255, 255, 0, 255, 255, 255, 255});
   CHECK(read_text_file("v 0 0 0\nv 1 0 0 1\n").info.channels.empty());
 }
 

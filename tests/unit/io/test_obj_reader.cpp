@@ -111,6 +111,11 @@ TEST_CASE("faces of an OBJ with fewer than three corners are left out and counte
   CHECK(read.small_faces == 3);
 }
 
+TEST_CASE("a text may begin with a byte order mark") {
+  const Quiet quiet;
+  check_square(read_bytes("\xEF\xBB\xBF" + std::string(k_square) + "f 1 2 3\nf 3 2 4\n"));
+}
+
 TEST_CASE("what an OBJ has besides is named") {
   const Quiet quiet;
   const ReadFile read = read_bytes(
@@ -125,7 +130,7 @@ TEST_CASE("what an OBJ has besides is named") {
   using Words = std::vector<std::string>;
   CHECK(read_bytes("v 0 0 0\nv 0 0 0 1 0 0\n").info.skipped.empty());
   CHECK(read_bytes("v 0 0 0 1\n").info.skipped == Words{"vertex.weight"});
-  CHECK(read_bytes("v 0 0 0 1 1 1 1\n").info.skipped == Words{"vertex.weight"});
+  CHECK(read_bytes("v 0 0 0 1 1 1 1\n").info.skipped == Words{"vertex.alpha"});
 }
 
 TEST_CASE("OBJ numbers are read by the rule of ascii PLY") {
