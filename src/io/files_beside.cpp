@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <meshfarm/util/errors.hpp>
 
@@ -54,12 +56,16 @@ std::optional<fs::path> find_beside(const fs::path& folder, std::string_view nam
   std::string text(name);
   std::replace(text.begin(), text.end(), '\\', '/');
   const fs::path whole(text);
-  const fs::path last = whole.filename();
-  for (const fs::path& path : {whole, last}) {
-    if (is_beneath(path) && is_file(folder / path)) return folder / path;
+  std::vector<fs::path> endings;
+  for (auto first = whole.begin(); first != whole.end(); ++first) {
+    fs::path ending;
+    for (auto part = first; part != whole.end(); ++part) ending /= *part;
+    if (is_beneath(ending)) endings.push_back(std::move(ending));
   }
-  for (const fs::path& path : {whole, last}) {
-    if (!is_beneath(path)) continue;
+  for (const fs::path& path : endings) {
+    if (is_file(folder / path)) return folder / path;
+  }
+  for (const fs::path& path : endings) {
     if (auto found = find_in_any_case(folder / path)) return found;
   }
   return std::nullopt;

@@ -14,8 +14,8 @@ namespace meshfarm {
 bool is_beneath(const std::filesystem::path& path);
 
 /// The file, in this folder or below it, that a mesh's or a material's text names: first by the
-/// path as written, with either kind of slash, then by its last component; if there is no exact
-/// match, in any case of letters. So files from other systems are found.
+/// path as written, with either kind of slash, then by ever fewer of its last parts; if there is no
+/// exact match, in any case of letters. So files from other systems and folders are found.
 std::optional<std::filesystem::path> find_beside(const std::filesystem::path& folder,
                                                  std::string_view name);
 

@@ -25,6 +25,10 @@ TEST_CASE("files that other systems named are found beside a mesh, and nowhere e
   CHECK(found("maps\\c.jpg") == "maps/C.JPG");
   CHECK(found("D:\\work\\a b.png") == "a b.png");
   CHECK(found("/home/other/A B.PNG") == "a b.png");
+  CHECK(found("D:\\work\\maps\\c.jpg") == "maps/C.JPG");
+  CHECK(found("/home/other/model/maps/C.JPG") == "maps/C.JPG");
+  CHECK(found("../maps/C.JPG") == "maps/C.JPG");
+  CHECK(found("/home/other/C.JPG") == "");
   CHECK(found("../outside.png") == "");
   CHECK(found("maps") == "");
   CHECK(found("") == "");
