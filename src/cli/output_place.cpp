@@ -55,6 +55,10 @@ void check_place(const std::string& output) {
   if (fs::exists(there) && !fs::is_regular_file(there)) {
     throw IoError("cannot write over what is no regular file", path, EINVAL);
   }
+  // The file gets its name when it is complete: that would replace the link, as of /dev/stdout.
+  if (fs::is_symlink(fs::symlink_status(path, unknown))) {
+    throw UsageError(output + ": is a link; give the name of the file to write");
+  }
   const fs::file_status around = fs::status(folder, unknown);
   if (fs::exists(around) && !fs::is_directory(around)) {
     throw IoError("cannot write into", folder, ENOTDIR);

@@ -97,13 +97,16 @@ TEST_CASE("what cannot be a file to write is refused before the work") {
   const std::string cube = shell.cube();
   const std::string pipe = shell.path("pipe.ply");
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
-  for (const std::string& output : {std::string(), std::string("-x.ply"), pipe}) {
+  const std::string link = shell.path("link.ply");
+  fs::create_symlink("elsewhere.ply", link);
+  for (const std::string& output : {std::string(), std::string("-x.ply"), pipe, link}) {
     CAPTURE(output);
     const Ran ran = shell({"simplify", cube, "-o", output, "--ratio", "0.5"});
     CHECK(ran.code != 0);
     CHECK(lines(ran.err) == 1);
     CHECK_FALSE(fs::exists(output + ".stage"));
   }
+  CHECK(fs::is_symlink(link));
   const Ran file = shell({"replay", cube, "--ratio", "0.5"});
   CHECK(file.code == 1);
   CHECK(has(file.err, "Not a directory"));
