@@ -195,7 +195,7 @@ class BatchCommand : public Command {
   /// If the file system cannot keep the runs' keys private, they are in a folder on this host.
   std::vector<std::string> key_words() {
     if (keeps_private(pool_)) return {};
-    std::string folder = (fs::temp_directory_path() / "meshfarm-XXXXXX").string();
+    std::string folder = (temporary_folder() / "meshfarm-XXXXXX").string();
     if (::mkdtemp(folder.data()) == nullptr) throw_errno("cannot make", folder);
     keys_ = folder;
     return {"--key-file", (keys_ / "run.keys").string()};

@@ -16,6 +16,7 @@
 #include <meshfarm/util/checksum.hpp>
 #include <meshfarm/util/control_groups.hpp>
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/file.hpp>
 #include <meshfarm/util/log.hpp>
 #include <meshfarm/util/memory.hpp>
 
@@ -63,7 +64,7 @@ class KeysAside {
     if (!farm.network.this_host_only || !farm.network.security.key_file.empty() ||
         keeps_private(stage.root() / "control"))
       return;
-    std::string folder = (std::filesystem::temp_directory_path() / "meshfarm-XXXXXX").string();
+    std::string folder = (temporary_folder() / "meshfarm-XXXXXX").string();
     if (::mkdtemp(folder.data()) == nullptr) throw_errno("cannot make", folder);
     folder_ = folder;
   }

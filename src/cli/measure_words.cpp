@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/measure_words.hpp"
 
-#include <filesystem>
-
 #include <meshfarm/util/errors.hpp>
+#include <meshfarm/util/file.hpp>
 
 #include "cli/options.hpp"
 
@@ -32,7 +31,7 @@ void MeasureWords::add(po::options_description& options) {
 void MeasureWords::check() {
   divide.memory_bytes = parse_size(memory_, "--memory");
   if (divide.memory_bytes == 0) throw UsageError("--memory must be above 0");
-  divide.folder = scratch_.empty() ? std::filesystem::temp_directory_path().string() : scratch_;
+  divide.folder = scratch_.empty() ? temporary_folder().string() : scratch_;
 }
 
 std::uint64_t memory_to_hold(std::uint64_t vertices, std::uint64_t triangles) {

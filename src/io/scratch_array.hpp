@@ -4,13 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <span>
-#include <system_error>
 
 #include <sys/mman.h>
 
-#include <meshfarm/util/errors.hpp>
 #include <meshfarm/util/file.hpp>
 
 namespace meshfarm {
@@ -30,10 +27,7 @@ class ScratchArray {
       map_ = MappedFile::memory(count * sizeof(T));
       return;
     }
-    std::error_code error;
-    const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
-    if (error) throw IoError("cannot keep scratch in", folder, error.value());
-    map_ = MappedFile::scratch(folder, count * sizeof(T));
+    map_ = MappedFile::scratch(temporary_folder(), count * sizeof(T));
   }
 
   std::span<T> items() { return map_.as_span<T>(); }

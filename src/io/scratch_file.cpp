@@ -15,9 +15,7 @@ namespace meshfarm {
 
 ScratchFile make_scratch_file() {
   ScratchFile file;
-  std::error_code error;
-  file.folder = std::filesystem::temp_directory_path(error);
-  if (error) throw IoError("cannot keep scratch in", file.folder, error.value());
+  file.folder = temporary_folder();
   std::string name = (file.folder / "meshfarm.XXXXXX").string();
   file.fd = Fd(::mkostemp(name.data(), O_CLOEXEC));
   if (!file.fd) throw_errno("cannot make", name);

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
@@ -14,6 +17,15 @@
 #include <meshfarm/util/file.hpp>
 
 namespace meshfarm {
+
+std::filesystem::path temporary_folder() {
+  std::error_code error;
+  std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  if (!error) return folder;
+  const char* named = std::getenv("TMPDIR");
+  folder = named != nullptr ? named : "/tmp";
+  throw IoError("cannot keep scratch files in TMPDIR,", folder, error.value());
+}
 
 Fd::~Fd() {
   if (fd_ >= 0) ::close(fd_);

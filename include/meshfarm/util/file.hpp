@@ -13,6 +13,9 @@
 
 namespace meshfarm {
 
+/// $TMPDIR, or /tmp. Throws IoError if there is no such folder.
+std::filesystem::path temporary_folder();
+
 /// Owns a file descriptor.
 class Fd {
  public:
