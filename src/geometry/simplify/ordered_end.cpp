@@ -30,6 +30,8 @@ constexpr double k_fair_distance = 1.2;
 constexpr std::uint64_t k_fair_samples = 10'000;
 // Once found fair, this is reconsidered when at most this share of the triangles is left.
 constexpr double k_decided = 0.8;
+// With smaller goals, simplifying the topology may not get any further: the last piece stays.
+constexpr std::uint64_t k_least_goal = 100;
 // This quantile of the costs stands for the first collapses.
 constexpr double k_first_share = 0.125;
 // With fewer refusals per expensive collapse, giving up the topology is not even tried: keeping it
@@ -212,7 +214,7 @@ bool OrderedEnd::is_hampered() const {
 /// Whether the goal has too few triangles for the topology. If so, keeping it need not be tried.
 bool OrderedEnd::cannot_keep(const SimplifyGoal& goal) const {
   if (topology_ != TopologyMode::automatic || bound_ != nullptr) return false;
-  if (std::isfinite(goal.max_cost)) return false;
+  if (std::isfinite(goal.max_cost) || goal.triangles < k_least_goal) return false;
   Adjacency adjacency;
   adjacency.build(mesh_.mesh().triangles, mesh_.vertices());
   return least_triangles(mesh_.flags(), adjacency) > goal.triangles + 1;
