@@ -167,8 +167,9 @@ class Simplifier {
   bool has_free_border() const;
   /// The greatest cost paid so far.
   double max_cost() const;
-  /// The cost level that the mesh has reached: what the last pass was allowed to pay, or, where
-  /// edges collapse strictly in order, the cost of the last collapse.
+  /// The cost level that the mesh has reached: what the last pass was allowed to pay, passes that
+  /// mostly refused left out; or, where edges then collapsed strictly in order, the cost of the
+  /// last collapse, if that is greater.
   double pass_cost() const;
   /// The last few copies that SimplifyGoal::keep_at asked for, in that order.
   std::vector<Mesh> take_kept();
