@@ -75,8 +75,8 @@ std::optional<PieceCut> along_sides(const CornerPoints& corners, const CornerPoi
     if (!(reach > farthest)) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const double here = beyond[k], there = beyond[(k + 1) % 3];
+      if ((here > 0) == (there > 0)) continue;
       const double share = here / (here - there);
-      if (!((here > 0) != (there > 0))) continue;
       if (!(share > k_least_cut && share < 1 - k_least_cut)) continue;
       farthest = reach;
       cut = {k, share};

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include <meshfarm/util/errors.hpp>
@@ -43,15 +42,17 @@ std::optional<Keyword> keyword_of(std::string_view text) {
     left.remove_prefix(part.size());
     return true;
   };
-  for (bool any = true; any;) {
-    any = false;
-    for (auto [part, has] : {std::pair("ST", &word.has_texture), std::pair("C", &word.has_colour),
-                             std::pair("N", &word.has_normal)}) {
-      if (*has || !take(part)) continue;
-      *has = any = true;
-      word.has_normal_last = word.has_normal && (word.has_normal_last || !word.has_colour);
-    }
+  const auto take_once = [&take](bool& has, std::string_view part) {
+    if (has) return false;
+    has = take(part);
+    return has;
+  };
+  while (take_once(word.has_texture, "ST") || take_once(word.has_colour, "C") ||
+         take_once(word.has_normal, "N")) {
   }
+  const std::string_view letters = text.substr(0, text.size() - left.size());
+  word.has_normal_last =
+      word.has_normal && word.has_colour && letters.find('N') < letters.find('C');
   word.has_fourth = take("4");
   word.has_dimensions = take("n");
   if (!take("OFF")) return std::nullopt;
@@ -136,14 +137,13 @@ class OffHeaderParser {
     element.role = PlyRole::vertices;
     element.axes = {0, 1, 2};
     std::vector<std::string> names = {"x", "y", "z"};
-    const bool has_normal_last = word.has_normal_last && word.has_colour;
     const auto add_normal = [&] { names.insert(names.end(), {"nx", "ny", "nz"}); };
-    if (word.has_normal && !has_normal_last) add_normal();
+    if (word.has_normal && !word.has_normal_last) add_normal();
     const std::size_t first_colour = names.size();
     if (word.has_colour) names.insert(names.end(), {"red", "green", "blue"});
-    if (has_normal_last) names.emplace_back("alpha");
+    if (word.has_normal_last) names.emplace_back("alpha");
     const std::size_t end_of_colour = names.size();
-    if (has_normal_last) add_normal();
+    if (word.has_normal_last) add_normal();
     if (word.has_texture) names.insert(names.end(), {"s", "t"});
     const bool is_whole = word.has_colour && has_levels(first_colour, names.size() - end_of_colour);
     for (std::size_t i = 0; i < names.size(); ++i) {

@@ -19,12 +19,12 @@
 namespace meshfarm {
 
 std::filesystem::path temporary_folder() {
-  std::error_code error;
-  std::filesystem::path folder = std::filesystem::temp_directory_path(error);
-  if (!error) return folder;
   const char* named = std::getenv("TMPDIR");
-  folder = named != nullptr ? named : "/tmp";
-  throw IoError("cannot keep scratch files in TMPDIR,", folder, error.value());
+  std::filesystem::path folder = named != nullptr && *named != '\0' ? named : "/tmp";
+  std::error_code error;
+  if (std::filesystem::is_directory(folder, error)) return folder;
+  throw IoError("no folder for temporary files, set TMPDIR to one:", folder,
+                error ? error.value() : ENOTDIR);
 }
 
 Fd::~Fd() {
