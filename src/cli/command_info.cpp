@@ -12,6 +12,7 @@
 #include <meshfarm/geometry/uv_facts.hpp>
 #include <meshfarm/geometry/weld.hpp>
 #include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/io/near_vertices.hpp>
 #include <meshfarm/io/stream_file.hpp>
 #include <meshfarm/report/summary.hpp>
 #include <meshfarm/staging/stage.hpp>
@@ -129,6 +130,9 @@ class InfoCommand : public Command {
     summary.short_faces = source.small_faces();
     summary.not_finite = surface.not_finite();
     summary.dropped_not_finite = surface.dropped();
+    if (may_have_near_misses(source.info())) {
+      summary.near_misses = find_near_misses(source, summary.box);
+    }
     const SurfaceTopology topology = surface.measure_topology();
     summary.welded = topology.welded;
     summary.as_it_is = topology.as_it_is;

@@ -90,7 +90,8 @@ class SimplifyCommand : public Command {
     remove_unfinished(output_);
     const bool stage_was_there = !is_own_stage_ && holds_cut(stage_);
     cut_to_stage({input_, stage_, cut_, talk_, stop,
-                  [this](std::uint64_t triangles) { return farm_pays(triangles); }});
+                  [this](std::uint64_t triangles) { return farm_pays(triangles); },
+                  target_.run.error});
     const int code = run_local_farm(
         {stage_, output_, output_words_, target_, network_, schedule_, when_full_, talk_, workers_},
         stop);

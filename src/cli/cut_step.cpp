@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/cut_step.hpp"
 
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -13,6 +16,7 @@
 #include <meshfarm/io/channel_choice.hpp>
 #include <meshfarm/io/mesh_format.hpp>
 #include <meshfarm/io/mesh_source.hpp>
+#include <meshfarm/io/near_vertices.hpp>
 #include <meshfarm/pipeline/cut_job.hpp>
 #include <meshfarm/staging/claim.hpp>
 #include <meshfarm/staging/stage.hpp>
@@ -74,7 +78,7 @@ std::optional<Cutting> cutting_for(const CutStep& step, const MeshSource& source
   const bool is_asked = words.where == "farm";
   const bool may = words.where == "auto" && step.farm_pays && step.farm_pays(source.info().faces) &&
                    words.cut.scheme == Scheme::cut && words.cut.weld == Weld::exact &&
-                   words.memory.empty();
+                   words.memory.empty() && source.info().near_merges.distance == 0;
   if (!is_asked && !may) return std::nullopt;
   std::optional<Cutting> cutting =
       plan_cutting(step.input, {words.cut.parts, words.blocks, words.where == "farm"});
@@ -82,6 +86,63 @@ std::optional<Cutting> cutting_for(const CutStep& step, const MeshSource& source
   if (why.empty()) return cutting;
   if (is_asked) throw UsageError(step.input + ": cannot be cut by the farm: " + why);
   return std::nullopt;
+}
+
+/// "1.2e-07"
+std::string text_of(double length) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.begin(), text.end(), length, std::chars_format::general, 2);
+  return {text.begin(), end.ptr};
+}
+
+/// The distance up to which vertices are merged; 0: only at the same position.
+double merge_distance(const CutStep& step, MeshSource& source, const Box& box) {
+  constexpr double k_most_of_diagonal = 0.01;
+  constexpr double k_most_of_error = 0.05;
+  const Length& asked = step.words.weld_distance;
+  if (asked.value > 0) {
+    if (asked.in(box) > k_most_of_diagonal * box.diagonal()) {
+      throw UsageError("--weld " + step.words.weld + ": more than 1% of the diagonal");
+    }
+    return asked.in(box);
+  }
+  const double found = find_near_misses(source, box);
+  const double most = step.error.value > 0 ? k_most_of_error * step.error.in(box) : HUGE_VAL;
+  if (found <= most) return found;
+  log_warning(step.input + ": corners that belong together are up to " + text_of(found) +
+              " apart, and are not merged, as --error is so small; --weld LENGTH merges them");
+  return 0;
+}
+
+/// Merges vertices that are near each other, if so asked or if rounding has parted them.
+std::unique_ptr<MeshSource> near_merged(std::unique_ptr<MeshSource> source, const CutStep& step) {
+  const CutWords& words = step.words;
+  const bool is_asked = words.weld_distance.value > 0;
+  if (!is_asked && (words.weld != "auto" || !may_have_near_misses(source->info()))) return source;
+  const Box box = vertex_box(*source);
+  const double distance = merge_distance(step, *source, box);
+  if (distance == 0) return source;
+  if (words.where == "farm") {
+    throw UsageError(step.input +
+                     ": cannot be cut by the farm: corners that belong together are "
+                     "up to " +
+                     text_of(distance) +
+                     " apart; --cut here merges them, --weld exact "
+                     "leaves them as they are");
+  }
+  ProgressPrinter printer(step.talk.progress());
+  const auto show = [&](double done) {
+    if (step.stop) throw IncompleteError("the cut was interrupted; run the same command again");
+    printer.show({.phase = "cut: merge near vertices", .done = done, .triangles = 0});
+  };
+  source = with_near_merged(std::move(source), box, {distance, words.cut.threads, show});
+  const NearMerges& made = source->info().near_merges;
+  if (made.vertices > 0) {
+    log_info(step.input + ": vertices up to " + text_of(distance) + " apart were merged, " +
+             std::to_string(made.vertices) + " moved" +
+             (is_asked ? "" : "; --weld exact leaves them as they are"));
+  }
+  return source;
 }
 
 /// Leaves the cut to the first jobs of a run.
@@ -137,6 +198,7 @@ Manifest cut_to_stage(const CutStep& step) {
     if (is_new && !stage.has_manifest()) remove_stage(stage.root());
   };
   try {
+    source = near_merged(std::move(source), step);
     return cut(*source, stage, step);
   } catch (const DataError&) {  // found on the way
     forget();

@@ -22,6 +22,8 @@ struct CutStep {
   /// Whether --cut auto uses the farm for a mesh of this many triangles, if the farm can cut it;
   /// may be empty.
   std::function<bool(std::uint64_t triangles)> farm_pays = {};
+  /// The greatest error of the run that follows; 0: not known.
+  Length error = {};
 };
 
 /// Cuts a file, or makes streams from it, in a stage without a manifest, with progress on stderr.

@@ -68,9 +68,10 @@ void CutWords::add(po::options_description& options) {
       "parts", po::value(&cut.parts)->value_name("N"),
       "number of parts (0, the default: about one million triangles each, and at least 16 parts "
       "for a large mesh) or of streams (0, the default: 1.2 million triangles each)")(
-      "weld", po::value(&weld)->default_value(weld)->value_name("exact|off"),
-      "exact: merge vertices at the same position, except where surfaces only touch; off: do not "
-      "merge")(
+      "weld", po::value(&weld)->default_value(weld)->value_name("auto|exact|off|LENGTH"),
+      "exact: merge vertices at the same position, except where surfaces only touch; LENGTH: merge "
+      "vertices up to this far apart, too, as in 0.01 or 0.001%; auto: as exact, but corners that "
+      "miss each other since coordinates were rounded are merged; off: do not merge")(
       "attributes", po::value(&attributes)->default_value(attributes)->value_name("auto|none|LIST"),
       "auto: colours, normals and other numbers of the vertices, and materials or other labels of "
       "the triangles, if the formats can store them; none: positions only; LIST: only these, as in "
@@ -92,7 +93,7 @@ void CutWords::add(po::options_description& options) {
 void CutWords::check() {
   cut.scheme =
       chosen<Scheme>("--scheme", scheme_word, {{"cut", Scheme::cut}, {"stream", Scheme::stream}});
-  cut.weld = chosen<Weld>("--weld", weld, {{"exact", Weld::exact}, {"off", Weld::off}});
+  check_weld();
   channels = parse_choice(attributes, "--attributes");
   parse_uv(uv);
   cut.sort = chosen<SortAt>("--sort", sort, {{"here", SortAt::here}, {"farm", SortAt::farm}});
@@ -106,7 +107,9 @@ void CutWords::check() {
   if (where == "farm" && scheme_word != "cut") {
     throw UsageError("--cut farm needs --scheme cut; with --scheme stream use --sort farm");
   }
-  if (where == "farm" && weld != "exact") throw UsageError("--cut farm needs --weld exact");
+  if (where == "farm" && (cut.weld == Weld::off || weld_distance.value > 0)) {
+    throw UsageError("--cut farm needs --weld exact");
+  }
   if (cut.parts > 1'000'000) throw UsageError("--parts: at most 1,000,000");
   if (cut.window_triangles < 1000 || cut.window_triangles > 1'000'000'000) {
     throw UsageError("--window: from 1,000 to 1,000,000,000 triangles");
@@ -115,6 +118,18 @@ void CutWords::check() {
   if (memory.empty()) return;
   cut.memory_bytes = parse_size(memory, "--memory");
   if (cut.memory_bytes == 0) throw UsageError("--memory must be above 0");
+}
+
+void CutWords::check_weld() {
+  cut.weld = weld == "off" ? Weld::off : Weld::exact;
+  weld_distance = {};
+  if (weld == "auto" || weld == "exact" || weld == "off") return;
+  const std::optional<Length> length = length_in(weld);
+  if (!length) {
+    throw UsageError("--weld is 'auto', 'exact', 'off' or a length, as in 0.01 or 0.001%, not '" +
+                     weld + "'");
+  }
+  weld_distance = *length;
 }
 
 void CutWords::check_given(const GivenOptions& given, bool auto_farms) const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,9 @@ namespace po = boost::program_options;
 
 // Option groups shared by commands: add() declares, the other functions convert the texts to values
 // and throw UsageError. Defaults are in the members.
+
+/// "0.5%": of the diagonal; "2.5": in the mesh's unit. Nothing for any other text.
+std::optional<Length> length_in(const std::string& text);
 
 /// Warns about each given option, which has no effect without `needed`.
 void warn_of_unused(const GivenOptions& given, std::initializer_list<std::string_view> options,
@@ -86,7 +90,8 @@ struct CutWords {
   std::string sort = "here";
   std::string where = "auto";  // where the cut is done
   std::uint32_t blocks = 0;    // number of blocks if the farm cuts
-  std::string weld = "exact";
+  std::string weld = "auto";
+  Length weld_distance;  // up to which vertices are asked to be merged
   std::string attributes = "auto";
   std::string uv = "auto";
   ChannelChoice channels;
@@ -101,6 +106,9 @@ struct CutWords {
   bool may_be_farmed() const { return where != "here" && cut.scheme != Scheme::stream; }
   /// The effective options as words for a command line.
   std::vector<std::string> words() const;
+
+ private:
+  void check_weld();
 };
 
 /// --key-file, --insecure, --insecure-network, --allow-soft.

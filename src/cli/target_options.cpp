@@ -37,14 +37,13 @@ std::optional<Number> parse_number(const std::string& text) {
   return number;
 }
 
-/// "0.5%": of the diagonal; "2.5": in the mesh's unit.
 Length parse_length(const std::string& text, std::string_view option) {
-  const std::optional<Number> number = parse_number(text);
-  if (!number) {
+  const std::optional<Length> length = length_in(text);
+  if (!length) {
     throw UsageError(std::string(option) +
                      " takes a length in the mesh's unit, or a share of the diagonal as in 0.5%");
   }
-  return {number->value, number->is_percent};
+  return *length;
 }
 
 double parse_ratio(const std::string& text) {
@@ -66,6 +65,12 @@ void check_certify(const RunOptions& run) {
 }
 
 }  // namespace
+
+std::optional<Length> length_in(const std::string& text) {
+  const std::optional<Number> number = parse_number(text);
+  if (!number) return std::nullopt;
+  return Length{number->value, number->is_percent};
+}
 
 void TargetOptions::add(po::options_description& options) {
   options.add_options()(

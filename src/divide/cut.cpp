@@ -67,6 +67,7 @@ class Cutter {
     manifest_.input_format = info.format;
     if (info.compression != "none") manifest_.input_format += ", " + info.compression;
     manifest_.skipped = info.skipped;
+    manifest_.near_merges = info.near_merges;
   }
 
   void tell(std::string_view phase, std::uint64_t done, std::uint64_t all) const {

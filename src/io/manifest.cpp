@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the meshfarm authors
 // SPDX-License-Identifier: MIT
 //
-// The manifest, kind "MNFT", version 8; the payload of a sealed file. Strings are u32 + characters,
+// The manifest, kind "MNFT", version 9; the payload of a sealed file. Strings are u32 + characters,
 // a file is name | size u64 | xxh3-64 u64:
 //   input | input format | scheme u8 (0 cut, 1 stream) | partitioner | window u64 | position type
-//   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | coincident vertices u64 | dropped
-//   degenerate u64 | coincident corners u64 | dropped not finite u64 | dropped duplicate u64 |
+//   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | near merges (distance f64 | vertices
+//   u64) | coincident vertices u64 | dropped degenerate u64 | coincident corners u64 | dropped not finite u64 | dropped duplicate u64 |
 //   channels u32 x (name | type u8, its bytes | role u8), if any: file | points u64 |
 //   columns u8: 1 labels, 2 texture coordinates | of labels: name | materials u32 x (name | colour
 //   4 x f32 | with texture coordinates wrap u8 u8 | maps u32 x (use u8 | picture u32)) | label
@@ -21,7 +21,8 @@
 //   blocks u32 | triangle blocks u32; there are no parts then, and the boundary has no name
 // Version 1 had no scheme, window and samples, version 2 no sorting, version 3 no partitioner, no
 // coincident corners and no dropped not finite, version 4 no channels, version 5 no
-// labels, version 6 no index of the boundary, version 7 no cutting and nothing shared.
+// labels, version 6 no index of the boundary, version 7 no cutting and nothing shared, version 8 no
+// near merges.
 #include <algorithm>
 #include <cmath>
 
@@ -37,7 +38,7 @@ namespace meshfarm {
 namespace {
 
 constexpr FileKind k_manifest_kind = {'M', 'N', 'F', 'T'};
-constexpr std::uint32_t k_manifest_version = 8;
+constexpr std::uint32_t k_manifest_version = 9;
 
 /// A manifest may name only files of the kind that belongs in that place.
 template <class Name>
@@ -261,6 +262,8 @@ std::string encode_manifest(const Manifest& m) {
   out.put(m.box.hi);
   out.put(m.input_vertices);
   out.put(m.input_triangles);
+  out.put(m.near_merges.distance);
+  out.put(m.near_merges.vertices);
   out.put(m.coincident_vertices);
   out.put(m.dropped_degenerate);
   out.put(m.coincident_corners);
@@ -298,6 +301,8 @@ Manifest decode_manifest(std::string_view file, std::string_view what) {
   m.box.hi = in.get<Vec3>();
   m.input_vertices = in.get<std::uint64_t>();
   m.input_triangles = in.get<std::uint64_t>();
+  m.near_merges.distance = in.get<double>();
+  m.near_merges.vertices = in.get<std::uint64_t>();
   m.coincident_vertices = in.get<std::uint64_t>();
   m.dropped_degenerate = in.get<std::uint64_t>();
   m.coincident_corners = in.get<std::uint64_t>();

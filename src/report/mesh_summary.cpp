@@ -29,6 +29,7 @@ std::string render(const FileSummary& s, Format format) {
                  {"short_faces", s.short_faces},
                  {"not_finite", s.not_finite},
                  {"dropped_not_finite", s.dropped_not_finite},
+                 {"near_misses", s.near_misses > 0 ? Json(s.near_misses) : Json(nullptr)},
                  {"positions", s.file.positions == PositionType::float64 ? "float64" : "float32"},
                  {"channels", names_of(s.file.channels)},
                  {"labels", to_json(s.file.labels)},
@@ -58,6 +59,10 @@ std::string render(const FileSummary& s, Format format) {
                             (s.file.positions == PositionType::float64 ? ", double" : ", float"));
   if (s.not_finite > 0) {
     lines.add("", grouped(s.not_finite) + " of them with a coordinate that is not finite");
+  }
+  if (s.near_misses > 0) {
+    lines.add("", "corners that belong together are up to " + number(s.near_misses, "%.2g") +
+                      " apart: simplify merges them");
   }
   if (!s.file.channels.empty()) lines.add("channels", joined(names_of(s.file.channels)));
   if (s.file.labels) lines.add("labels", text_of(*s.file.labels));

@@ -23,15 +23,17 @@ Json better_json(const RunSummary& s) {
 }
 
 Json input_json(const Manifest& m) {
-  return {{"path", m.input},
-          {"format", m.input_format},
-          {"vertices", m.input_vertices},
-          {"triangles", m.input_triangles},
-          {"coincident_vertices", m.coincident_vertices},
-          {"channels", names_of(m.channels.channels)},
-          {"labels", to_json(m.labels)},
-          {"texture_coordinates", m.uvs},
-          {"skipped", m.skipped}};
+  return {
+      {"path", m.input},
+      {"format", m.input_format},
+      {"vertices", m.input_vertices},
+      {"triangles", m.input_triangles},
+      {"near_merges", {{"distance", m.near_merges.distance}, {"vertices", m.near_merges.vertices}}},
+      {"coincident_vertices", m.coincident_vertices},
+      {"channels", names_of(m.channels.channels)},
+      {"labels", to_json(m.labels)},
+      {"texture_coordinates", m.uvs},
+      {"skipped", m.skipped}};
 }
 
 Json finish_json(const RunSummary& s) {
@@ -140,6 +142,10 @@ void add_input(Lines& lines, const Manifest& m) {
             grouped(m.input_triangles) + " triangles, " + grouped(m.input_vertices) + " vertices" +
                 (m.coincident_vertices != 0 ? ", " + grouped(m.coincident_vertices) + " coincident"
                                             : ""));
+  if (m.near_merges.vertices > 0) {
+    lines.add("", grouped(m.near_merges.vertices) + " moved onto others up to " +
+                      number(m.near_merges.distance, "%.3g") + " away");
+  }
   if (!m.skipped.empty()) lines.add("not kept", joined(m.skipped));
   if (m.dropped_not_finite > 0) {
     lines.add("dropped",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 
 #include <doctest/doctest.h>
 
@@ -403,7 +404,7 @@ TEST_CASE("a stage that holds a finished cut is not cut again") {
   SUBCASE("other options are refused") {
     const Ran ran = shell({"cut", cube, "--stage", stage, "--weld", "off"});
     CHECK(ran.code == 1);
-    CHECK(has(ran.err, "--weld exact"));
+    CHECK(has(ran.err, "--weld auto"));
     CHECK(has(ran.err, "meshfarm replay"));
   }
   SUBCASE("another input is refused") {
@@ -533,6 +534,73 @@ TEST_CASE("info and compare weld, and hold no more than they are given") {
   CHECK(rms_of(held) > 0);
   CHECK(std::abs(rms_of(divided) / rms_of(held) - 1) < 0.05);
   CHECK(shell({"info", torus, "--memory", "0"}).code == 2);
+}
+
+TEST_CASE("corners that hardly miss each other are merged, as far as asked for") {
+  Shell shell;
+  std::ostringstream stl;
+  stl.precision(9);
+  stl << "solid sheet\n";
+  int corners = 0;
+  const auto corner = [&](int x, int y) {
+    stl << "vertex " << x + 1e-6 * (corners * 13 % 7) << ' ' << y << ' '
+        << std::sin(0.2 * x) + 1e-6 * (corners * 5 % 3) << '\n';
+    ++corners;
+  };
+  const auto triangle = [&](const std::array<std::array<int, 2>, 3>& t) {
+    stl << "facet normal 0 0 0\nouter loop\n";
+    for (const auto& [x, y] : t) corner(x, y);
+    stl << "endloop\nendfacet\n";
+  };
+  for (int x = 0; x < 40; ++x) {
+    for (int y = 0; y < 40; ++y) {
+      triangle({{{x, y}, {x + 1, y}, {x + 1, y + 1}}});
+      triangle({{{x, y}, {x + 1, y + 1}, {x, y + 1}}});
+    }
+  }
+  stl << "endsolid\n";
+  const std::string sheet = shell.file("sheet.stl", stl.str()), out = shell.path("out.ply");
+  CHECK(has(shell({"info", sheet}).out, "corners that belong together are up to "));
+  const auto simplify = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"simplify", sheet, "-o", out};
+    words.insert(words.end(), more.begin(), more.end());
+    return shell(words);
+  };
+  const auto pieces = [&] {
+    const std::string text = shell({"info", out}).out;
+    const std::size_t at = text.find(" component");
+    REQUIRE(at != std::string::npos);
+    return text.substr(text.rfind(' ', at - 1) + 1, at - text.rfind(' ', at - 1) - 1);
+  };
+  for (const char* scheme : {"cut", "stream"}) {
+    CAPTURE(scheme);
+    const Ran merged = simplify({"--triangles", "300", "--scheme", scheme});
+    CHECK(merged.code == 0);
+    CHECK(has(merged.err, "--weld exact leaves them as they are"));
+    CHECK(has(merged.out, " moved onto others up to "));
+    CHECK(pieces() == "1");
+  }
+  const Ran apart = simplify({"--ratio", "1", "--weld", "exact"});
+  CHECK(apart.code == 0);
+  CHECK_FALSE(has(apart.err, "merged"));
+  CHECK(pieces() != "1");
+  // 2e-5 is more than the jitter; 1e-7 is less.
+  CHECK(simplify({"--ratio", "1", "--weld", "2e-5"}).code == 0);
+  CHECK(pieces() == "1");
+  CHECK(simplify({"--ratio", "1", "--weld", "1e-7"}).code == 0);
+  CHECK(pieces() != "1");
+  // A promise of less error than the merge would make is kept.
+  const Ran bounded = simplify({"--error", "1e-7"});
+  CHECK(bounded.code == 0);
+  CHECK(has(bounded.err, "warning: "));
+  CHECK(has(bounded.err, "not merged, as --error is so small"));
+  CHECK_FALSE(has(simplify({"--error", "0.1"}).err, "warning: "));
+  const Ran far = simplify({"--ratio", "0.5", "--weld", "1"});
+  CHECK(far.code == 2);
+  CHECK(has(far.err, "--weld 1: more than 1% of the diagonal"));
+  const Ran farmed = simplify({"--ratio", "0.5", "--cut", "farm"});
+  CHECK(farmed.code == 2);
+  CHECK(has(farmed.err, "--cut here merges them"));
 }
 
 TEST_CASE("generate makes shapes by their names") {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <random>
+#include <random>
 #include <utility>
 
 namespace meshfarm::test {
@@ -155,6 +157,23 @@ Mesh with_lost_vertices(const Mesh& mesh, std::uint32_t triangles) {
     made.triangles.push_back({2 * i, 2 * i + 1, 2 * i + (i % 2 == 0 ? 3 : 4)});
   }
   return made;
+}
+
+Mesh jittered_soup(const Mesh& mesh, double by) {
+  std::mt19937 random(1);
+  const auto moved = [&](double x) {
+    return x + by * (2.0 * static_cast<double>(random()) / std::mt19937::max() - 1);
+  };
+  Mesh soup;
+  for (const Triangle& t : mesh.triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    for (const std::uint32_t v : t) {
+      const Vec3 p = mesh.positions[v];
+      soup.positions.push_back({moved(p.x), moved(p.y), moved(p.z)});
+    }
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  return soup;
 }
 
 Mesh touching_twice(const Mesh& mesh, Vec3 point) {

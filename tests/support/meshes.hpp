@@ -51,6 +51,10 @@ Mesh with_crowd(Mesh mesh, std::uint32_t many);
 /// some of them, no triangle uses the others.
 Mesh with_lost_vertices(const Mesh& mesh, std::uint32_t triangles);
 
+/// The same triangles, each with three vertices of its own: its corners, each coordinate moved by
+/// up to `by`.
+Mesh jittered_soup(const Mesh& mesh, double by);
+
 /// A mesh and its reflection in a point of its surface, where the two touch.
 Mesh touching_twice(const Mesh& mesh, Vec3 point);
 

@@ -70,7 +70,8 @@ struct Manifest {
   Box box;
   std::uint64_t input_vertices = 0;
   std::uint64_t input_triangles = 0;  // after fans and strips were split
-  /// Vertices at the position of an earlier one, with --weld exact. They are merged, except where
+  NearMerges near_merges;
+  /// Vertices at the position of an earlier one, unless --weld is off. They are merged, except where
   /// surfaces touch. How many are merged depends on the seams; this number does not.
   std::uint64_t coincident_vertices = 0;
   std::uint64_t dropped_degenerate = 0;  // in the parts and the boundary; depends on the seams

@@ -18,6 +18,12 @@
 
 namespace meshfarm {
 
+/// Vertices that were merged although they were not at the same position.
+struct NearMerges {
+  double distance = 0;         // up to which they were; 0: none
+  std::uint64_t vertices = 0;  // that were moved to the position of another
+};
+
 /// What a mesh file's header promises or a first count found, and how the reader interprets it.
 struct MeshFileInfo {
   std::string format;       // "PLY ascii", "PLY binary little endian", ...
@@ -29,6 +35,7 @@ struct MeshFileInfo {
   std::optional<LabelMeaning> labels;  // of the triangles
   bool uvs = false;                    // whether triangles have texture coordinates
   PictureFiles pictures;               // of the materials, with Textures::keep
+  NearMerges near_merges;
   /// The columns that the triangles have.
   ColumnSet columns() const { return {labels.has_value(), uvs}; }
   std::vector<std::string> skipped;   // "face.flags", "material (5 elements)", "normals (120)"

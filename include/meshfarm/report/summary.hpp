@@ -152,6 +152,8 @@ struct FileSummary {
   std::uint64_t short_faces = 0;         // faces with fewer than three corners, left out
   std::uint64_t not_finite = 0;          // vertices with a coordinate that is not finite
   std::uint64_t dropped_not_finite = 0;  // their triangles, left out
+  /// How far corners that belong together are apart; 0 if they are at the same position.
+  double near_misses = 0;
   /// Approximate minimum of triangles of a result that keeps the textures; 0 if unknown.
   std::uint64_t texture_floor = 0;
   /// With coincident vertices welded as in a run, and as in the file.

@@ -226,6 +226,14 @@ TEST_CASE("a cut's words say all of it again, and limits are told") {
   CHECK(again.cut.memory_bytes == 1ULL << 30);
   CHECK(again.cut.window_triangles == 2000);
   CHECK(again.cut.scratch == "/x");
+  CHECK(plain.weld_distance.value == 0);
+  CHECK(again.weld_distance.value == 0);
+  const CutWords near = parse<CutWords>({"--weld=0.01%"});
+  CHECK(near.cut.weld == Weld::exact);
+  CHECK(near.weld_distance.value == 0.0001);
+  CHECK(near.weld_distance.of_diagonal);
+  CHECK(parse<CutWords>(near.words()).words() == near.words());
+  CHECK(error_of({"--weld=0.5", "--cut=farm"}, parse<CutWords>) != "");
   for (const char* wrong : {"--scheme=both", "--sort=there", "--sort=farm", "--weld=near",
                             "--parts=1000001", "--window=999", "--memory=0", "--uv=some"}) {
     CAPTURE(wrong);

@@ -28,6 +28,7 @@ Manifest sample_manifest() {
   m.box.add({1, 2, 3});
   m.input_vertices = std::uint64_t{5} << 32;
   m.input_triangles = std::uint64_t{10} << 32;
+  m.near_merges = {1e-7, std::uint64_t{6} << 32};
   m.coincident_vertices = 7;
   m.dropped_degenerate = 8;
   m.coincident_corners = 13;
@@ -174,6 +175,8 @@ TEST_CASE("a manifest comes back whole") {
   CHECK(encode_manifest(back) == encode_manifest(m));
   CHECK(back.input == "lucy.ply");
   CHECK(back.partitioner == "METIS 5.1.0");
+  CHECK(back.near_merges.distance == 1e-7);
+  CHECK(back.near_merges.vertices == std::uint64_t{6} << 32);
   CHECK(back.coincident_corners == 13);
   CHECK(back.dropped_not_finite == 12);
   CHECK(back.input_triangles == std::uint64_t{10} << 32);
