@@ -10,13 +10,12 @@
 #include <utility>
 
 #include <meshfarm/geometry/near_misses.hpp>
-#include <meshfarm/geometry/place_hash.hpp>
 
 namespace meshfarm {
 namespace {
 
-constexpr std::size_t k_most_sampled = 200'000;
-constexpr double k_cells_of_sample = 1024;  // along the diagonal
+constexpr std::size_t k_most_sampled = 100'000;
+constexpr std::uint64_t k_cells_of_sample = 1024;  // along the diagonal
 /// A distance at which corners are merged, in units of the greatest distance to a next one: several
 /// corners that belong together are farther apart than each is from its next.
 constexpr double k_wide = 4;
@@ -27,8 +26,18 @@ constexpr double k_share_near = 0.01;
 constexpr double k_share_against = 0.01;
 /// Distances that are tried as the limit of what is very near: each a quarter of the one before.
 constexpr int k_near_limits = 8;
-/// Beyond this, most of the mesh is in one cell.
+/// With more, most of the mesh is in a few cells, as with a vertex far away from all others.
+constexpr std::uint64_t k_most_looks = 4'000'000;
 constexpr unsigned k_most_thinned = 40;
+
+/// Its high bits are the better ones. All coordinates are from 0 to k_cells_of_sample.
+std::uint64_t hash_of_cell(Vec3 at) {
+  constexpr std::uint64_t k_row = k_cells_of_sample + 1;
+  const auto x = static_cast<std::uint32_t>(at.x);
+  const auto y = static_cast<std::uint32_t>(at.y);
+  const auto z = static_cast<std::uint32_t>(at.z);
+  return ((x * k_row + y) * k_row + z + 1) * 0x9e3779b97f4a7c15U;
+}
 
 bool is_left_out(std::uint64_t cell, unsigned thinned) {
   return thinned > 0 && cell >> (64 - thinned) != 0;
@@ -39,13 +48,12 @@ bool is_left_out(std::uint64_t cell, unsigned thinned) {
 NearMisses::NearMisses(const Box& box) : corner_(box.lo), diagonal_(box.diagonal()) {}
 
 void NearMisses::add(std::span<const Vec3> batch) {
+  if (!(diagonal_ > 0) || !std::isfinite(diagonal_)) return;
   const double scale = k_cells_of_sample / diagonal_;
   for (const Vec3& p : batch) {
     const std::uint64_t vertex = vertices_++;
     if (!has_position(p)) continue;
-    const Vec3 at = (p - corner_) * scale;
-    const std::uint64_t cell =
-        hash_of(PlaceKey({std::floor(at.x), std::floor(at.y), std::floor(at.z)}));
+    const std::uint64_t cell = hash_of_cell((p - corner_) * scale);
     if (is_left_out(cell, thinned_)) continue;
     sample_.push_back({p, cell, vertex});
     if (sample_.size() > k_most_sampled) thin_out();
@@ -74,27 +82,31 @@ void NearMisses::number_places() {
 }
 
 template <class Take>
-void NearMisses::for_neighbours(double most, Take take) const {
+bool NearMisses::for_neighbours(double most, Take take) const {
+  std::uint64_t looks = 0;
   for (std::uint32_t i = 0; i < places_.size(); ++i) {
     const Sampled& a = sample_[places_[i]];
     for (std::uint32_t j = i + 1; j < places_.size(); ++j) {
       const Sampled& b = sample_[places_[j]];
       if (b.cell != a.cell || b.position.x - a.position.x > most) break;
+      if (++looks > k_most_looks) return false;
       const double apart = length(b.position - a.position);
       if (apart <= most) take(i, j, apart);
     }
   }
+  return true;
 }
 
 bool NearMisses::look() {
-  if (!(diagonal_ > 0) || !std::isfinite(diagonal_)) return false;
   number_places();
   const double most = k_most_of_diagonal / k_wide * diagonal_;
   std::vector<double> next(places_.size(), std::numeric_limits<double>::infinity());
-  for_neighbours(k_empty_gap * most, [&](std::uint32_t a, std::uint32_t b, double apart) {
-    next[a] = std::min(next[a], apart);
-    next[b] = std::min(next[b], apart);
-  });
+  const bool has_seen_all =
+      for_neighbours(k_empty_gap * most, [&](std::uint32_t a, std::uint32_t b, double apart) {
+        next[a] = std::min(next[a], apart);
+        next[b] = std::min(next[b], apart);
+      });
+  if (!has_seen_all) return false;
   std::sort(next.begin(), next.end());
   const auto up_to = [&](double distance) {
     return static_cast<std::size_t>(std::upper_bound(next.begin(), next.end(), distance) -

@@ -17,7 +17,7 @@ namespace meshfarm {
 /// little, as after coordinates were rounded: many vertices then have another one very near that is
 /// in none of their triangles, and none somewhat farther away. All vertices have to be added, then
 /// all triangles if look() says so. What is found does not depend on the order.
-/// Memory: up to about 40 MB.
+/// Memory: up to about 70 MB.
 class NearMisses {
  public:
   /// distance() is at most this share of the diagonal.
@@ -49,9 +49,10 @@ class NearMisses {
 
   void thin_out();
   void number_places();
-  /// Calls take(i, j, distance) for places in a cell that are at most `most` apart.
+  /// Calls take(i, j, distance) for places in a cell that are at most `most` apart. Returns false
+  /// if there are too many to look at.
   template <class Take>
-  void for_neighbours(double most, Take take) const;
+  bool for_neighbours(double most, Take take) const;
   void list_pairs();
   void join(std::uint32_t a, std::uint32_t b);
 

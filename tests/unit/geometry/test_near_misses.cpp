@@ -102,6 +102,16 @@ TEST_CASE("NearMisses: small things in a large mesh are no misses") {
   CHECK(distance_in(mesh) == 0);
 }
 
+TEST_CASE("NearMisses: a mesh with a vertex far away has none, and is looked at in no time") {
+  Mesh mesh = test::jittered_soup(test::icosphere(6), 1e-7);
+  CHECK(distance_in(mesh) > 0);
+  mesh.positions.push_back({1e9, 0, 0});
+  CHECK(distance_in(mesh) == 0);
+  mesh = test::icosphere(5);
+  mesh.positions.push_back({1e7, 0, 0});
+  CHECK(distance_in(mesh) == 0);
+}
+
 TEST_CASE("NearMisses: distances of all sizes are no misses") {
   Mesh mesh;
   double size = 1;
