@@ -13,6 +13,9 @@
 namespace meshfarm {
 namespace {
 
+/// Some editors begin UTF-8 with it.
+constexpr std::string_view k_utf8_mark = "\xEF\xBB\xBF";
+
 bool is_of_name(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-';
 }
@@ -34,6 +37,7 @@ ConfigFile::ConfigFile(const std::string& path, const po::options_description& o
   std::size_t number = 0;
   for (std::string line; std::getline(text, line);) {
     ++number;
+    if (number == 1 && line.starts_with(k_utf8_mark)) line.erase(0, k_utf8_mark.size());
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (begins_section(line)) throw UsageError(place_of_line(number) + "there are no sections");
     std::istringstream one(line);

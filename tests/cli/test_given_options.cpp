@@ -108,6 +108,16 @@ TEST_CASE("a config file may say what a command has no use of") {
   CHECK(shell({"replay", shell.path("s"), "--ratio", "1", "--config", farm}).code == 0);
 }
 
+TEST_CASE("a config file may begin with a byte order mark, and its lines may end as on Windows") {
+  Shell shell;
+  const std::string config = shell.file("mark.conf",
+                                        "\xEF\xBB\xBF"
+                                        "ratio = 1\r\nworkers = 1\r\n");
+  const Ran ran = shell({"simplify", shell.cube(), "-o", shell.path("o.ply"), "--config", config});
+  CAPTURE(ran.err);
+  CHECK(ran.code == 0);
+}
+
 TEST_CASE("--plain of another format than GLB is told to change nothing, once") {
   Shell shell;
   const std::string cube = shell.cube();
