@@ -203,7 +203,6 @@ bool ClimbStage::is_held_back() const {
 
 /// Whether most of the collapses that the parts try will be refused.
 bool ClimbStage::is_much_refused() const {
-  if (!jobs_.foresees()) return false;
   const auto all = static_cast<double>(results_.free_triangles(results_.level));
   double refused = 0;
   for (std::uint32_t p = 0; p < results_.summaries.size(); ++p) refused += refused_in(p, all);

@@ -80,13 +80,6 @@ double PartJobs::wanted() const {
   return provision(ratio()) * static_cast<double>(target());
 }
 
-/// Below k_least_foreseen triangles the finish finds out as fast; and when a body was reduced to
-/// its last hundred, nearly all collapses were refused, although keeping its limbs was best.
-bool PartJobs::foresees() const {
-  constexpr double k_least_foreseen = 20'000;
-  return wanted() >= k_least_foreseen;
-}
-
 /// A proof needs the whole unchanged stream in memory: it is climbed like a part.
 bool PartJobs::is_sampled(std::uint32_t part) const {
   return !options_.certify && !manifest_.samples.empty() &&
@@ -149,11 +142,7 @@ void PartJobs::set_share_of(SimplifyParameters& parameters, std::uint32_t part,
     set_share(parameters, share_rule(headroom), entry.shared_triangles, entry.shared_boundary);
     return;
   }
-  const ShareRule rule{ratio(),
-                       headroom,
-                       end_of_ladders(),
-                       foresees(),
-                       manifest_.triangles(),
+  const ShareRule rule{ratio(), headroom, end_of_ladders(), manifest_.triangles(),
                        sample_counts(manifest_, options_).all()};
   set_share(parameters, rule, entry.triangles, entry.boundary_vertices);
 }
@@ -191,8 +180,8 @@ ShareRule PartJobs::share_rule(double headroom) const {
   if (options_.triangles != 0) ratio = static_cast<double>(options_.triangles) / some;
   if (manifest_.uvs) ratio = static_cast<double>(target()) / some;
   if (by_error()) ratio = 1;
-  return {std::min(1.0, ratio), headroom, end_of_ladders(),
-          foresees(),           all,      sample_counts(manifest_, options_).all()};
+  return {std::min(1.0, ratio), headroom, end_of_ladders(), all,
+          sample_counts(manifest_, options_).all()};
 }
 
 /// A multiple of what is kept for the finish. A finish in pieces needs the counts down to the

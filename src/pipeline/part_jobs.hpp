@@ -38,8 +38,6 @@ class PartJobs {
   double ratio() const;
   /// The triangles that the parts together keep for the finish to choose from.
   double wanted() const;
-  /// Whether it is worth predicting that the topology will be given up.
-  bool foresees() const;
   bool by_error() const { return options_.error.value > 0; }
   /// Whether a level must be found: the same ratio everywhere needs none.
   bool climbs_samples() const { return by_error() || options_.allocation == Allocation::threshold; }

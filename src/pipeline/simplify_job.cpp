@@ -21,14 +21,14 @@
 namespace meshfarm {
 namespace {
 
-// Version 11: allocation u8 | start u64 | even share u64 | end u64 | foreseen u64 | samples u64 |
+// Version 12: allocation u8 | start u64 | even share u64 | end u64 | foreseen u64 | samples u64 |
 // cost unit f64 | greatest error f64 | certified error f64 | lines (run_options.hpp) | source u8 |
 // for a rung: its place u32, level i32 | for a part to build: part u32 | ratio f64 | headroom f64 |
-// end f64 | foresees u8 | all triangles u64 | all samples u64 | bundles (bundle_list.hpp). Version
-// 4 had no appearances and labels, version 5 nothing to build, version 6 no certified error,
-// version 7 no end, version 8 no rung, version 9 no foreseen triangles; version 10 began at first
-// rungs only.
-constexpr std::uint8_t k_climb_version = 11;
+// end f64 | all triangles u64 | all samples u64 | bundles (bundle_list.hpp). Version 4 had no
+// appearances and labels, version 5 nothing to build, version 6 no certified error, version 7 no
+// end, version 8 no rung, version 9 no foreseen triangles; version 10 began at first rungs only;
+// version 11 did not always foresee.
+constexpr std::uint8_t k_climb_version = 12;
 constexpr std::uint64_t k_most_climb_samples = 100'000'000;
 constexpr std::int32_t k_top_level = 52;
 constexpr double k_mostly_free = 0.5;  // of triangles
@@ -211,9 +211,6 @@ PartToBuild get_part_to_build(ByteReader& in) {
   build.rule.ratio = in.get<double>();
   build.rule.headroom = in.get<double>();
   build.rule.end = in.get<double>();
-  const auto foresees = in.get<std::uint8_t>();
-  if (foresees > 1) in.fail("impossible share");
-  build.rule.foresees = foresees == 1;
   build.rule.all_triangles = in.get<std::uint64_t>();
   build.rule.all_samples = in.get<std::uint64_t>();
   if (!(build.rule.ratio > 0 && build.rule.ratio <= 1) || !(build.rule.headroom > 0) ||
@@ -291,7 +288,6 @@ std::string encode_parameters(const SimplifyParameters& parameters) {
   out.put(parameters.build->rule.ratio);
   out.put(parameters.build->rule.headroom);
   out.put(parameters.build->rule.end);
-  out.put(static_cast<std::uint8_t>(parameters.build->rule.foresees ? 1 : 0));
   out.put(parameters.build->rule.all_triangles);
   out.put(parameters.build->rule.all_samples);
   put_bundles(out, parameters.build->bundles);
@@ -350,7 +346,7 @@ void set_share(SimplifyParameters& parameters, const ShareRule& rule,
   parameters.share_triangles = static_cast<std::uint64_t>(share);
   parameters.start_triangles = static_cast<std::uint64_t>(start);
   parameters.end_triangles = static_cast<std::uint64_t>(end);
-  parameters.foreseen_triangles = rule.foresees ? static_cast<std::uint64_t>(kept) : 0;
+  parameters.foreseen_triangles = static_cast<std::uint64_t>(kept);
   const auto all = static_cast<double>(std::max<std::uint64_t>(1, rule.all_triangles));
   parameters.samples = static_cast<std::uint64_t>(
       std::ceil(triangles / all * static_cast<double>(rule.all_samples)));

@@ -18,10 +18,9 @@ inline constexpr std::string_view k_simplify_kind = "simplify";
 /// How to compute a part's share of the target from what was distributed to the part; used by
 /// whoever builds it, the cut or the job itself.
 struct ShareRule {
-  double ratio = 1;       // wanted triangles / all triangles
-  double headroom = 1;    // a ladder begins at this many times the share
-  double end = 1;         // and may end at this many times what is kept for the finish
-  bool foresees = false;  // and where SimplifyParameters::foreseen_triangles says so
+  double ratio = 1;     // wanted triangles / all triangles
+  double headroom = 1;  // a ladder begins at this many times the share
+  double end = 1;       // and may end at this many times what is kept for the finish
   std::uint64_t all_triangles = 0;
   std::uint64_t all_samples = 0;  // points of the whole surface
 };

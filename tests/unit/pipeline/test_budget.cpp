@@ -243,7 +243,7 @@ TEST_CASE("parameters come back; damaged ones are refused") {
     CHECK_THROWS_AS(decode_parameters(std::string_view(bytes).substr(0, i)), DataError);
   }
   CHECK_THROWS_AS(decode_parameters(bytes + "x"), DataError);
-  CHECK_THROWS_AS(decode_parameters("\x0c" + bytes.substr(1)), DataError);
+  CHECK_THROWS_AS(decode_parameters("\x0b" + bytes.substr(1)), DataError);
   // After the topology there are only the two numbers of appearances, what is said of labels, and
   // that there is nothing to build.
   std::string other = bytes;
