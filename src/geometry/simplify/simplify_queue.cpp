@@ -55,6 +55,10 @@ constexpr double k_loss_of_opened = 8;
 // in tiles and a skull have up to 3 % more. Without this limit, no surface would stay closed.
 constexpr std::uint64_t k_room_of_piece = 4;
 
+// What is pinched off from a closed piece may be opened, too, if the piece is to have fewer
+// triangles than this. Otherwise thin tiles of a roof become crumbs, with twice the error.
+constexpr double k_small_piece = 16;
+
 // Cost factor for the leftovers of pinching: they face the wrong way more often than not. With
 // 1/64, fewer triangles do, but a skull has 7 % more error.
 constexpr double k_cost_of_left_over = 0.125;
@@ -102,7 +106,7 @@ std::uint64_t most_at_once(std::uint64_t excess, std::uint64_t goal, bool nothin
 class OpenComponents {
  public:
   OpenComponents(std::span<const std::uint8_t> flags, const Adjacency& adjacency)
-      : sets_(flags.size()), flags_(flags.size(), 0) {
+      : sets_(flags.size()), flags_(flags.size(), 0), corners_(flags.size(), 0) {
     const auto vertices = static_cast<std::uint32_t>(flags.size());
     for (std::uint32_t v = 0; v < vertices; ++v) {
       for (const Corner& c : adjacency.at(v)) sets_.join(v, c.next);
@@ -111,12 +115,14 @@ class OpenComponents {
       if (adjacency.count(v) == 0) continue;
       std::uint8_t& component = flags_[sets_.find(v)];
       component |= k_used;
+      corners_[sets_.find(v)] += adjacency.count(v);
       if ((flags[v] & (k_fixed | k_border)) == k_border) component |= k_open;
       if ((flags[v] & (k_fixed | k_border | k_complex)) != 0) component |= k_unclosed;
     }
   }
   /// Whether it has a border where it is not fixed.
   bool is_open(std::uint32_t vertex) { return (flags_[sets_.find(vertex)] & k_open) != 0; }
+  std::uint64_t triangles(std::uint32_t vertex) { return corners_[sets_.find(vertex)] / 3; }
   /// Four triangles for each closed component, two for each that is fixed, open or complex; 0 if
   /// there is only one component.
   std::uint64_t room_for_all() const {
@@ -130,7 +136,8 @@ class OpenComponents {
   enum : std::uint8_t { k_used = 1, k_open = 2, k_unclosed = 4 };
 
   UnionFind sets_;
-  std::vector<std::uint8_t> flags_;  // of each component, at its vertex
+  std::vector<std::uint8_t> flags_;     // of each component, at its vertex
+  std::vector<std::uint64_t> corners_;  // of its triangles, at the same place
 };
 
 }  // namespace
@@ -296,6 +303,17 @@ bool CollapseQueue::needs_room(std::uint64_t last) const {
   return last < k_room_of_piece * OpenComponents(mesh_.flags, mesh_.adjacency).room_for_all();
 }
 
+/// Lets closed pieces open from now on, and what will be pinched off from small ones.
+void CollapseQueue::let_open(std::uint64_t last) {
+  general_.let_open();
+  OpenComponents components(mesh_.flags, mesh_.adjacency);
+  const double share = static_cast<double>(last) / static_cast<double>(triangles_);
+  for (std::uint32_t v = 0; v < origins_.size(); ++v) {
+    const bool is_small = share * static_cast<double>(components.triangles(v)) < k_small_piece;
+    if (is_small && (origins_[v] & k_pinched) == 0) origins_[v] = 0;
+  }
+}
+
 bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
   most_cost_ = goal.max_cost;
   double share = k_ranked_share;
@@ -307,7 +325,7 @@ bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
     const std::uint64_t before = triangles_;
     const bool goes_on = std::exchange(is_ranked, false);
     if (!goes_on) rank(share);
-    if (needs_room(last_of(goal))) general_.let_open();
+    if (needs_room(last_of(goal))) let_open(last_of(goal));
     const Stop stop = run(goal, progress);
     held_ = held_ || stop == Stop::held;
     if (stop == Stop::too_rough) {
