@@ -30,6 +30,11 @@ constexpr double k_fair_refused = 1.1;
 constexpr double k_fair_count = 1.2;
 constexpr double k_least_way = 1.25;
 
+/// If parts that continue to keep their topology come to more than this many levels above those
+/// that do not, it was not fair after all. On a circuit board they came to the top, and the error
+/// was seven times as great.
+constexpr std::int32_t k_levels_too_far = 2;
+
 /// At most this many triangles are compared with the result, to find which pieces and handles went.
 constexpr double k_most_compared = 4e6;
 
@@ -119,7 +124,9 @@ std::vector<std::uint32_t> ClimbStage::choose_level() {
   results_.level = common_level(climbed, static_cast<std::uint64_t>(jobs_.wanted()));
   if (results_.topology == TopologyMode::keep_while_fair) {
     const bool is_held = is_held_back();
-    if (is_held || (!keeps_after_all_ && is_much_refused())) {
+    if (given_up_ && (is_held || is_too_far())) {
+      give_up_after_all();
+    } else if (is_held || (!keeps_after_all_ && is_much_refused())) {
       if (!is_held) kept_ladders_ = results_;
       give_up_topology();
       return climbed_;
@@ -167,7 +174,7 @@ bool ClimbStage::was_fair() const {
 
 /// Returns the parts that had stopped, to continue from their last rungs.
 std::vector<std::uint32_t> ClimbStage::keep_after_all() {
-  results_ = std::move(*kept_ladders_);
+  given_up_ = GivenUp{std::exchange(results_, std::move(*kept_ladders_)), std::move(kept_)};
   kept_.clear();
   keeps_after_all_ = true;
   std::vector<std::uint32_t> stopped;
@@ -177,6 +184,20 @@ std::vector<std::uint32_t> ClimbStage::keep_after_all() {
     stopped.push_back(part);
   }
   return stopped;
+}
+
+/// Whether parts that keep their topology after all had to go on to a much higher cost than those
+/// that do not.
+bool ClimbStage::is_too_far() const {
+  return results_.level > given_up_->results.level + k_levels_too_far;
+}
+
+/// Goes back to the ladders that do not keep the topology.
+void ClimbStage::give_up_after_all() {
+  results_ = std::move(given_up_->results);
+  kept_ = std::move(given_up_->kept);
+  given_up_.reset();
+  keeps_after_all_ = false;
 }
 
 /// Whether parts that keep their topology could not follow the others to the common level, or all

@@ -30,12 +30,19 @@ class ClimbStage {
   /// Call this once all are accepted. Returns the parts to climb again: those that were simplified
   /// too far, with a finer start; or all, with their topology simplified, if it holds back so much
   /// of the mesh that the other parts would pay for it; or those that had stopped for that reason,
-  /// if the others would not have paid after all.
+  /// if the others would not have paid after all. If these come to a much higher cost, what was
+  /// made without the topology is taken.
   std::vector<std::uint32_t> choose_level();
   /// The rungs that kept their topology before it was given up; empty if it was not.
   const std::vector<ChosenRung>& kept() const { return kept_; }
 
  private:
+  /// The ladders that gave up the topology, to come back to.
+  struct GivenUp {
+    PartResults results;
+    std::vector<ChosenRung> kept;
+  };
+
   Job climb(std::uint32_t part) const;
   void stand_for_stream(std::uint32_t part);
   bool is_held_back() const;
@@ -44,6 +51,8 @@ class ClimbStage {
   void give_up_topology();
   bool was_fair() const;
   std::vector<std::uint32_t> keep_after_all();
+  bool is_too_far() const;
+  void give_up_after_all();
   void keep_coarsest();
 
   const Manifest& manifest_;
@@ -59,6 +68,7 @@ class ClimbStage {
   std::vector<ChosenRung> kept_;
   std::optional<PartResults> kept_ladders_;  // until compared with those that gave up the topology
   bool keeps_after_all_ = false;             // the outcome of that comparison
+  std::optional<GivenUp> given_up_;          // while it keeps the topology after all
 };
 
 }  // namespace meshfarm

@@ -57,7 +57,7 @@ constexpr std::uint64_t k_room_of_piece = 4;
 
 // What is pinched off from a closed piece may be opened, too, if the piece is to have fewer
 // triangles than this. Otherwise thin tiles of a roof become crumbs, with twice the error.
-constexpr double k_small_piece = 16;
+constexpr double k_small_to_open = 16;
 
 // Cost factor for the leftovers of pinching: they face the wrong way more often than not. With
 // 1/64, fewer triangles do, but a skull has 7 % more error.
@@ -309,7 +309,7 @@ void CollapseQueue::let_open(std::uint64_t last) {
   OpenComponents components(mesh_.flags, mesh_.adjacency);
   const double share = static_cast<double>(last) / static_cast<double>(triangles_);
   for (std::uint32_t v = 0; v < origins_.size(); ++v) {
-    const bool is_small = share * static_cast<double>(components.triangles(v)) < k_small_piece;
+    const bool is_small = share * static_cast<double>(components.triangles(v)) < k_small_to_open;
     if (is_small && (origins_[v] & k_pinched) == 0) origins_[v] = 0;
   }
 }
