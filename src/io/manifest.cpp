@@ -4,8 +4,9 @@
 // The manifest, kind "MNFT", version 9; the payload of a sealed file. Strings are u32 + characters,
 // a file is name | size u64 | xxh3-64 u64:
 //   input | input format | scheme u8 (0 cut, 1 stream) | partitioner | window u64 | position type
-//   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | near merges (distance f64 | vertices
-//   u64) | coincident vertices u64 | dropped degenerate u64 | coincident corners u64 | dropped not finite u64 | dropped duplicate u64 |
+//   u8 | box 6 x f64 | input vertices u64 | input triangles u64 | near merges (distance f64 |
+//   vertices u64) | coincident vertices u64 | dropped degenerate u64 | coincident corners u64 |
+//   dropped not finite u64 | dropped duplicate u64 |
 //   channels u32 x (name | type u8, its bytes | role u8), if any: file | points u64 |
 //   columns u8: 1 labels, 2 texture coordinates | of labels: name | materials u32 x (name | colour
 //   4 x f32 | with texture coordinates wrap u8 u8 | maps u32 x (use u8 | picture u32)) | label

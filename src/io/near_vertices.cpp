@@ -84,7 +84,6 @@ class RealPositions {
   explicit RealPositions(std::uint64_t vertices) : rows_(vertices) {}
 
   std::uint64_t size() { return rows_.size(); }
-  Vec3 at(std::uint64_t vertex) { return point(rows_.items()[vertex]); }
   void put(std::uint64_t vertex, Vec3 p) {
     rows_.items()[vertex] = row(p);
     rows_.used(1);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <random>
-#include <random>
 #include <utility>
 
 namespace meshfarm::test {

@@ -71,8 +71,8 @@ struct Manifest {
   std::uint64_t input_vertices = 0;
   std::uint64_t input_triangles = 0;  // after fans and strips were split
   NearMerges near_merges;
-  /// Vertices at the position of an earlier one, unless --weld is off. They are merged, except where
-  /// surfaces touch. How many are merged depends on the seams; this number does not.
+  /// Vertices at the position of an earlier one, unless --weld is off. They are merged, except
+  /// where surfaces touch. How many are merged depends on the seams; this number does not.
   std::uint64_t coincident_vertices = 0;
   std::uint64_t dropped_degenerate = 0;  // in the parts and the boundary; depends on the seams
   /// Triangles with two corners at one position: the number reported to people. They are dropped as
