@@ -295,18 +295,15 @@ bool CollapseQueue::is_guarded(std::uint32_t a, std::uint32_t b, const Collapse&
   return !guard_->allows(planned(a, b, collapse));
 }
 
-/// Whether closed pieces are to be opened from now on, to leave `last` triangles. Counted again
-/// with every ranking, as tubes close and fall to pieces on the way.
-bool CollapseQueue::needs_room(std::uint64_t last) const {
-  if (!mesh_.any_topology || guard_ != nullptr || crossings_ != nullptr) return false;
-  if (last == 0 || general_.may_open()) return false;
-  return last < k_room_of_piece * OpenComponents(mesh_.flags, mesh_.adjacency).room_for_all();
-}
-
-/// Lets closed pieces open from now on, and what will be pinched off from small ones.
-void CollapseQueue::let_open(std::uint64_t last) {
-  general_.let_open();
+/// Lets closed pieces open from now on, and what will be pinched off from small ones, if the pieces
+/// need room to leave `last` triangles. They are counted again with every ranking, as tubes close
+/// and fall to pieces on the way.
+void CollapseQueue::let_open_for_room(std::uint64_t last) {
+  if (!mesh_.any_topology || guard_ != nullptr || crossings_ != nullptr) return;
+  if (last == 0 || general_.may_open()) return;
   OpenComponents components(mesh_.flags, mesh_.adjacency);
+  if (last >= k_room_of_piece * components.room_for_all()) return;
+  general_.let_open();
   const double share = static_cast<double>(last) / static_cast<double>(triangles_);
   for (std::uint32_t v = 0; v < origins_.size(); ++v) {
     const bool is_small = share * static_cast<double>(components.triangles(v)) < k_small_to_open;
@@ -325,7 +322,7 @@ bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
     const std::uint64_t before = triangles_;
     const bool goes_on = std::exchange(is_ranked, false);
     if (!goes_on) rank(share);
-    if (needs_room(last_of(goal))) let_open(last_of(goal));
+    let_open_for_room(last_of(goal));
     const Stop stop = run(goal, progress);
     held_ = held_ || stop == Stop::held;
     if (stop == Stop::too_rough) {

@@ -123,8 +123,7 @@ class CollapseQueue {
   PastPlanes planes_at(std::uint32_t vertex) const;
   PastPlanes end_at(std::uint32_t vertex) const;
   void rank(double share);
-  bool needs_room(std::uint64_t last) const;
-  void let_open(std::uint64_t last);
+  void let_open_for_room(std::uint64_t last);
   Stop run(const SimplifyGoal& goal, const Progress& progress);
   void remember_piece(const QueuedEdge& queued, double cost);
   bool is_queued_otherwise(const QueuedEdge& queued);

@@ -12,7 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/mesh.hpp>
+#include <meshfarm/geometry/simplify.hpp>
 
 #include "support/meshes.hpp"
 
@@ -211,6 +213,26 @@ class Random {
 
 inline bool same_bytes(const Mesh& a, const Mesh& b) {
   return a.positions == b.positions && a.triangles == b.triangles;
+}
+
+inline Simplifier reduced_topology(const Mesh& mesh, std::uint64_t triangles,
+                                   TopologyMode topology = TopologyMode::automatic) {
+  SimplifyOptions options;
+  options.lines.topology = topology;
+  Simplifier simplifier(mesh, options);
+  simplifier.reduce({triangles});
+  return simplifier;
+}
+
+/// The greater values of both directions.
+inline Distance topology_error(const Mesh& original, const Mesh& result) {
+  DistanceOptions options;
+  options.samples = 50'000;
+  options.threads = 1;
+  const Distance there = measure_distance(original, result, options);
+  const Distance back = measure_distance(result, original, options);
+  return {std::max(there.rms, back.rms), std::max(there.mean, back.mean),
+          std::max(there.max, back.max)};
 }
 
 }  // namespace meshfarm::simplify_test

@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Many small closed pieces that are thin.
-#include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>
 
-#include <meshfarm/geometry/distance.hpp>
 #include <meshfarm/geometry/simplify.hpp>
 
 #include "test_simplify_meshes.hpp"
@@ -55,24 +53,6 @@ Mesh roof_tile() {
   return mesh;
 }
 
-Simplifier reduced_roof(const Mesh& mesh, std::uint64_t triangles,
-                        TopologyMode topology = TopologyMode::automatic) {
-  SimplifyOptions options;
-  options.lines.topology = topology;
-  Simplifier simplifier(mesh, options);
-  simplifier.reduce({triangles});
-  return simplifier;
-}
-
-/// The greater of both directions.
-double rms_from(const Mesh& original, const Mesh& result) {
-  DistanceOptions options;
-  options.samples = 50'000;
-  options.threads = 1;
-  return std::max(measure_distance(original, result, options).rms,
-                  measure_distance(result, original, options).rms);
-}
-
 }  // namespace
 
 TEST_CASE("topology: thin closed pieces are opened where that is fair, and do not fall to crumbs") {
@@ -83,16 +63,16 @@ TEST_CASE("topology: thin closed pieces are opened where that is fair, and do no
   Mesh roof;
   for (std::uint32_t i = 0; i < k_tiles; ++i) append(roof, tile, {2.5 * (i % 7), 0, 3.0 * (i / 7)});
   const std::uint64_t goal = 7 * k_tiles;
-  const Simplifier kept = reduced_roof(roof, goal, TopologyMode::keep);
+  const Simplifier kept = reduced_topology(roof, goal, TopologyMode::keep);
   CHECK(check(kept.mesh()).border_edges == 0);
-  const Simplifier result = reduced_roof(roof, goal);
+  const Simplifier result = reduced_topology(roof, goal);
   CHECK(result.triangles() <= goal);
   CHECK(result.simplifies_topology());
   CHECK(check(result.mesh()).components < 3 * k_tiles);
   CHECK(check(result.mesh()).border_edges > 3 * k_tiles);
-  CHECK(rms_from(roof, result.mesh()) < 0.7 * rms_from(roof, kept.mesh()));
+  CHECK(topology_error(roof, result.mesh()).rms < 0.7 * topology_error(roof, kept.mesh()).rms);
   // With room enough, they stay closed.
-  const Simplifier roomy = reduced_roof(roof, 3 * goal);
+  const Simplifier roomy = reduced_topology(roof, 3 * goal);
   CHECK(check(roomy.mesh()).border_edges == 0);
   CHECK(check(roomy.mesh()).components == k_tiles);
 }

@@ -19,30 +19,10 @@ using namespace meshfarm::simplify_test;
 
 namespace {
 
-Simplifier reduced_topology(const Mesh& mesh, std::uint64_t triangles,
-                            TopologyMode topology = TopologyMode::automatic) {
-  SimplifyOptions options;
-  options.lines.topology = topology;
-  Simplifier simplifier(mesh, options);
-  simplifier.reduce({triangles});
-  return simplifier;
-}
-
 double diagonal(const Mesh& mesh) {
   Box box;
   for (const Vec3& p : mesh.positions) box.add(p);
   return box.diagonal();
-}
-
-/// The greater values of both directions.
-Distance topology_error(const Mesh& original, const Mesh& result) {
-  DistanceOptions options;
-  options.samples = 50'000;
-  options.threads = 1;
-  const Distance there = measure_distance(original, result, options);
-  const Distance back = measure_distance(result, original, options);
-  return {std::max(there.rms, back.rms), std::max(there.mean, back.mean),
-          std::max(there.max, back.max)};
 }
 
 Mesh scaled(Mesh mesh, double factor) {
