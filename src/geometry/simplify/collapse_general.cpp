@@ -336,14 +336,10 @@ void GeneralJudge::add_cost_of_tips(Collapse& collapse) {
   collapse.certain += cost;
 }
 
-/// Whether the triangles at both ends are a whole closed piece. What was pinched off from a closed
-/// one does not count, as that is to stay closed.
+/// Whether the triangles at both ends are a whole closed piece.
 bool GeneralJudge::is_closed_piece() const {
   const auto is_free = [&](std::uint32_t v) {
-    constexpr std::uint8_t k_of_closed = k_was_closed | k_pinched;
-    const bool is_own = state_.origins.empty() || (state_.origins[v] & k_of_closed) != k_of_closed;
-    return (state_.flags[v] & (k_fixed | k_border | k_complex)) == 0 && is_own &&
-           contains(lost_, v);
+    return (state_.flags[v] & (k_fixed | k_border | k_complex)) == 0 && contains(lost_, v);
   };
   return shared_.size() == 2 && std::all_of(a_.neighbours.begin(), a_.neighbours.end(), is_free) &&
          std::all_of(b_.neighbours.begin(), b_.neighbours.end(), is_free);

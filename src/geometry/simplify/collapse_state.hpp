@@ -26,10 +26,9 @@ struct CollapseState {
   const CreaseTest* creases = nullptr;  // where vertices are flagged as on creases
   std::span<Appearance> appearances;    // empty if they are not used
   AppearanceScale appearance_scale;
-  double uv_scale = 0;                         // LineOptions::uv_scale
-  std::span<const PastPlanes> past = {};       // of complex vertices and ribbons' ends, or empty
-  bool turns_ribbons = true;                   // Turn::ribbon is allowed
-  std::span<const std::uint8_t> origins = {};  // VertexOrigin, or empty
+  double uv_scale = 0;                    // LineOptions::uv_scale
+  std::span<const PastPlanes> past = {};  // of complex vertices and ribbons' ends, or empty
+  bool turns_ribbons = true;              // Turn::ribbon is allowed
 
   /// The appearances of a triangle's corners, beginning with the one at the vertex.
   AppearanceStar::Values values_at(std::uint32_t vertex, const Corner& c) const {

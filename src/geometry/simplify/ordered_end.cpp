@@ -22,12 +22,12 @@
 namespace meshfarm {
 namespace {
 
-// The topology is kept if the sum of the costs, which goes with the square of the error, is at most
-// this many times the sum without keeping it, or if the distance is at most k_fair_distance times
-// as great.
-constexpr double k_fair = 1.44;
+// The topology is kept if the distance is at most this many times as great as without keeping it.
+// Costs can't tell: what opens or removes thin pieces counts for more than the distance it makes.
 constexpr double k_fair_distance = 1.2;
 constexpr std::uint64_t k_fair_samples = 10'000;
+// As many as have run the two trials.
+constexpr unsigned k_threads = 2;
 // Once found fair, this is reconsidered when at most this share of the triangles is left.
 constexpr double k_decided = 0.8;
 // With smaller goals, simplifying the topology may not get any further: the last piece stays.
@@ -54,19 +54,20 @@ class DistanceFrom {
   /// `mesh` must outlive it.
   explicit DistanceFrom(const Mesh& mesh) {
     if (!is_measurable(mesh)) return;
-    points_ = sample_surface(mesh, {k_fair_samples, 1}).points;
-    to_mesh_.emplace(mesh, 1);
+    points_ = sample_surface(mesh, {k_fair_samples, k_threads}).points;
+    to_mesh_.emplace(mesh, k_threads);
   }
 
-  /// The squared RMS distance, the greater of both directions; 0 if one of the two cannot be
+  /// The squared RMS distance, the greater of both directions; infinite if one of the two cannot be
   /// measured.
   double squared_to(const CollapseQueue& queue) const {
     Mesh result;
     std::vector<std::uint8_t> flags;
     queue.copy_to(result, flags, 0);
-    if (!to_mesh_ || !is_measurable(result)) return 0;
-    const double there = DistanceMeter(result, 1).measure(points_).rms;
-    const double back = to_mesh_->measure(sample_surface(result, {k_fair_samples, 1}).points).rms;
+    if (!to_mesh_ || !is_measurable(result)) return HUGE_VAL;
+    const std::vector<Vec3> back_from = sample_surface(result, {k_fair_samples, k_threads}).points;
+    const double there = DistanceMeter(result, k_threads).measure(points_).rms;
+    const double back = to_mesh_->measure(back_from).rms;
     return std::max(there, back) * std::max(there, back);
   }
 
@@ -155,7 +156,6 @@ std::optional<double> OrderedEnd::reduce(const SimplifyGoal& goal,
     taken_ = UINT64_MAX;
   }
   if (!has_begun()) trial_ = std::make_unique<Trial>(mesh_, topology_, bound_);
-  const double paid_before = trial_->queue.paid();
   const bool may_give_up = topology_ == TopologyMode::automatic && !simplifies_topology();
   std::unique_ptr<Rival> rival;
   const auto tell = [&](std::uint64_t left) { return !progress || progress(left); };
@@ -177,7 +177,7 @@ std::optional<double> OrderedEnd::reduce(const SimplifyGoal& goal,
     if (rival == nullptr) rival = std::make_unique<Rival>(mesh_, bound_, goal);
     std::unique_ptr<Trial> other = rival->take([&] { return tell(trial_->queue.triangles()); });
     goes_on = other != nullptr;
-    if (goes_on && is_unfair(trial_->queue.paid() - paid_before, other->queue, goal)) {
+    if (goes_on && is_unfair(other->queue, goal)) {
       trial_ = std::move(other);
       taken_ = UINT64_MAX;
     }
@@ -266,14 +266,12 @@ double OrderedEnd::share_paid_before(const CollapseQueue& other) const {
 }
 
 /// Whether keeping the topology costs much more than simplifying it.
-bool OrderedEnd::is_unfair(double paid, const CollapseQueue& other,
-                           const SimplifyGoal& goal) const {
+bool OrderedEnd::is_unfair(const CollapseQueue& other, const SimplifyGoal& goal) const {
   const CollapseQueue& kept = trial_->queue;
   if (bound_ != nullptr) {
     return static_cast<double>(other.triangles()) < k_worth * static_cast<double>(kept.triangles());
   }
   if (kept.triangles() > goal.triangles + 1) return other.triangles() < kept.triangles();
-  if (!(paid > k_fair * other.paid())) return false;
   const DistanceFrom distance(mesh_.mesh());
   const double squared = distance.squared_to(other);
   const double squared_kept = distance.squared_to(kept);

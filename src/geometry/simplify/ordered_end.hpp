@@ -46,7 +46,7 @@ class OrderedEnd {
   bool refuses_much() const;
   bool is_costly_to_keep(const SimplifyGoal& goal) const;
   double share_paid_before(const CollapseQueue& other) const;
-  bool is_unfair(double paid, const CollapseQueue& other, const SimplifyGoal& goal) const;
+  bool is_unfair(const CollapseQueue& other, const SimplifyGoal& goal) const;
 
   WorkingMesh& mesh_;
   TopologyMode topology_;

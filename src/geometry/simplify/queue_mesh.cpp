@@ -136,7 +136,6 @@ void CollapseQueue::tidy_star(std::uint32_t vertex) {
     joined_.clear();
     joined_ids_.clear();
     const std::uint32_t v = f == 0 ? vertex : add_copy(vertex);
-    origins_[v] |= k_pinched;
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (fan[i] != f) continue;
       const auto [next, prev] = all[i];
@@ -196,6 +195,7 @@ void CollapseQueue::classify(std::uint32_t vertex) {
 }
 
 std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
+  ++pinches_;
   const std::uint32_t copy = mesh_.adjacency.add_vertex();
   const Vec3 position = mesh_.positions[vertex];
   const std::uint8_t flags = mesh_.flags[vertex];
@@ -207,10 +207,6 @@ std::uint32_t CollapseQueue::add_copy(std::uint32_t vertex) {
   }
   target_.push_back(copy);
   if (!past_.empty()) past_.emplace_back();
-  if (!origins_.empty()) {
-    const std::uint8_t origin = origins_[vertex];
-    origins_.push_back(origin);
-  }
   if (!piece_ends_.empty()) piece_ends_.emplace_back();
   refused_.push_back(0);
   looks_.push_back(0);

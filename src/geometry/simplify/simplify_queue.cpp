@@ -50,14 +50,14 @@ constexpr double k_loss_of_crossing = 64;
 // error; with 40, ten meshes have 0.94 to 1.02 times.
 constexpr double k_loss_of_opened = 8;
 
-// Closed pieces are opened where the goal has less than this many times the triangles that all
-// pieces need at least. With 1, tubes as thin as hairs have 3 to 4 times the error; with 2, a scan
-// in tiles and a skull have up to 3 % more. Without this limit, no surface would stay closed.
+// Closed pieces, and what is pinched off from them, are opened where the goal has less than this
+// many times the triangles that all pieces need at least. With 1, tubes as thin as hairs have 3 to
+// 4 times the error; with 2, a scan in tiles and a skull have up to 3 % more. Without this limit,
+// no surface would stay closed. With pinched pieces kept closed, a thin corrugated sheet falls to
+// crumbs, with twice the error.
 constexpr std::uint64_t k_room_of_piece = 4;
-
-// What is pinched off from a closed piece may be opened, too, if the piece is to have fewer
-// triangles than this. Otherwise thin tiles of a roof become crumbs, with twice the error.
-constexpr double k_small_to_open = 16;
+// Pieces are counted again at the earliest after one pinch per this many triangles of the goal.
+constexpr std::uint64_t k_goal_of_count = 64;
 
 // Cost factor for the leftovers of pinching: they face the wrong way more often than not. With
 // 1/64, fewer triangles do, but a skull has 7 % more error.
@@ -102,43 +102,25 @@ std::uint64_t most_at_once(std::uint64_t excess, std::uint64_t goal, bool nothin
   return excess < k_few_to_go ? excess + most_fewer(goal, nothing_else_does) : excess;
 }
 
-/// The components of a mesh, each known by one of its vertices.
-class OpenComponents {
- public:
-  OpenComponents(std::span<const std::uint8_t> flags, const Adjacency& adjacency)
-      : sets_(flags.size()), flags_(flags.size(), 0), corners_(flags.size(), 0) {
-    const auto vertices = static_cast<std::uint32_t>(flags.size());
-    for (std::uint32_t v = 0; v < vertices; ++v) {
-      for (const Corner& c : adjacency.at(v)) sets_.join(v, c.next);
-    }
-    for (std::uint32_t v = 0; v < vertices; ++v) {
-      if (adjacency.count(v) == 0) continue;
-      std::uint8_t& component = flags_[sets_.find(v)];
-      component |= k_used;
-      corners_[sets_.find(v)] += adjacency.count(v);
-      if ((flags[v] & (k_fixed | k_border)) == k_border) component |= k_open;
-      if ((flags[v] & (k_fixed | k_border | k_complex)) != 0) component |= k_unclosed;
-    }
+/// Four triangles for each closed component, two for each that is fixed, open or complex; 0 if
+/// there is only one component.
+std::uint64_t room_for_all(std::span<const std::uint8_t> flags, const Adjacency& adjacency) {
+  enum : std::uint8_t { k_used = 1, k_unclosed = 2 };
+  const auto vertices = static_cast<std::uint32_t>(flags.size());
+  UnionFind components(vertices);
+  for (std::uint32_t v = 0; v < vertices; ++v) {
+    for (const Corner& c : adjacency.at(v)) components.join(v, c.next);
   }
-  /// Whether it has a border where it is not fixed.
-  bool is_open(std::uint32_t vertex) { return (flags_[sets_.find(vertex)] & k_open) != 0; }
-  std::uint64_t triangles(std::uint32_t vertex) { return corners_[sets_.find(vertex)] / 3; }
-  /// Four triangles for each closed component, two for each that is fixed, open or complex; 0 if
-  /// there is only one component.
-  std::uint64_t room_for_all() const {
-    const auto all =
-        std::count_if(flags_.begin(), flags_.end(), [](std::uint8_t f) { return f != 0; });
-    const auto closed = std::count(flags_.begin(), flags_.end(), k_used);
-    return all > 1 ? static_cast<std::uint64_t>(2 * all + 2 * closed) : 0;
+  std::vector<std::uint8_t> kinds(vertices, 0);  // of each component, at its vertex
+  for (std::uint32_t v = 0; v < vertices; ++v) {
+    if (adjacency.count(v) == 0) continue;
+    const bool is_unclosed = (flags[v] & (k_fixed | k_border | k_complex)) != 0;
+    kinds[components.find(v)] |= is_unclosed ? k_used | k_unclosed : k_used;
   }
-
- private:
-  enum : std::uint8_t { k_used = 1, k_open = 2, k_unclosed = 4 };
-
-  UnionFind sets_;
-  std::vector<std::uint8_t> flags_;     // of each component, at its vertex
-  std::vector<std::uint64_t> corners_;  // of its triangles, at the same place
-};
+  const auto all = vertices - std::count(kinds.begin(), kinds.end(), 0);
+  const auto closed = std::count(kinds.begin(), kinds.end(), k_used);
+  return all > 1 ? static_cast<std::uint64_t>(2 * all + 2 * closed) : 0;
+}
 
 }  // namespace
 
@@ -155,23 +137,12 @@ void CollapseQueue::start(std::span<const Triangle> triangles) {
   stale_.assign(vertices, 0);
   piece_ends_.assign(mesh_.any_topology ? vertices : 0, {});
   heap_.clear();
-  remember_closed();
   remember();
   ranking_.begin_pass({mesh_.positions, triangles, mesh_.flags, &mesh_.adjacency,
                        &mesh_.creases.test(), mesh_.seam_only, true, mesh_.any_topology, true,
                        mesh_.appearances, mesh_.appearance_scale, mesh_.uv_scale});
   judge_.move_to(state());
   general_.move_to(state());
-}
-
-void CollapseQueue::remember_closed() {
-  origins_.clear();
-  if (!mesh_.any_topology) return;
-  OpenComponents components(mesh_.flags, mesh_.adjacency);
-  origins_.reserve(mesh_.flags.size());
-  for (std::uint32_t v = 0; v < mesh_.flags.size(); ++v) {
-    origins_.push_back(components.is_open(v) ? 0 : k_was_closed);
-  }
 }
 
 /// Ranks the cheapest share of all edges, at least up to a limit one step above the last one.
@@ -230,8 +201,7 @@ CollapseState CollapseQueue::state() {
           mesh_.appearance_scale,
           mesh_.uv_scale,
           past_,
-          true,
-          origins_};
+          true};
 }
 
 Collapse CollapseQueue::judge(std::uint32_t a, std::uint32_t b, std::uint64_t most_triangles) {
@@ -295,20 +265,23 @@ bool CollapseQueue::is_guarded(std::uint32_t a, std::uint32_t b, const Collapse&
   return !guard_->allows(planned(a, b, collapse));
 }
 
-/// Lets closed pieces open from now on, and what will be pinched off from small ones, if the pieces
-/// need room to leave `last` triangles. They are counted again with every ranking, as tubes close
-/// and fall to pieces on the way.
-void CollapseQueue::let_open_for_room(std::uint64_t last) {
-  if (!mesh_.any_topology || guard_ != nullptr || crossings_ != nullptr) return;
-  if (last == 0 || general_.may_open()) return;
-  OpenComponents components(mesh_.flags, mesh_.adjacency);
-  if (last >= k_room_of_piece * components.room_for_all()) return;
-  general_.let_open();
-  const double share = static_cast<double>(last) / static_cast<double>(triangles_);
-  for (std::uint32_t v = 0; v < origins_.size(); ++v) {
-    const bool is_small = share * static_cast<double>(components.triangles(v)) < k_small_to_open;
-    if (is_small && (origins_[v] & k_pinched) == 0) origins_[v] = 0;
+/// Lets closed pieces open from now on, and what is pinched off from them, if the pieces need room
+/// to leave `last` triangles. They are counted again and again, as tubes close and sheets fall to
+/// pieces on the way. Returns whether they may open now and might not before.
+bool CollapseQueue::let_open_for_room(std::uint64_t last) {
+  if (!mesh_.any_topology || guard_ != nullptr || crossings_ != nullptr) return false;
+  if (last == 0 || general_.may_open()) return false;
+  const std::uint64_t needed = k_room_of_piece * room_for_all(mesh_.flags, mesh_.adjacency);
+  pinches_ = 0;
+  if (last < needed) {
+    general_.let_open();
+    piece_ends_.assign(piece_ends_.size(), {});
+    return true;
   }
+  // A pinch makes at most one more closed piece.
+  const std::uint64_t room = (last - needed) / (4 * k_room_of_piece);
+  pinches_to_count_ = std::max(room, last / k_goal_of_count) + 1;
+  return false;
 }
 
 bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
@@ -325,8 +298,8 @@ bool CollapseQueue::reduce(const SimplifyGoal& goal, const Progress& progress) {
     let_open_for_room(last_of(goal));
     const Stop stop = run(goal, progress);
     held_ = held_ || stop == Stop::held;
-    if (stop == Stop::too_rough) {
-      ranking_.refine();
+    if (stop == Stop::too_rough) ranking_.refine();
+    if (stop == Stop::too_rough || stop == Stop::opened) {
       limit_ = 0;
       continue;
     }
@@ -356,6 +329,7 @@ CollapseQueue::Stop CollapseQueue::run(const SimplifyGoal& goal, const Progress&
     if (excess == 1 && !*may_be_odd) return Stop::met;
     if (is_hopeless()) return Stop::held;
     if (is_too_rough()) return Stop::too_rough;
+    if (pinches_ >= pinches_to_count_ && let_open_for_room(last_of(goal))) return Stop::opened;
     const QueuedEdge* const first = next();
     if (first == nullptr || first->key() > dearest) return Stop::nothing_left;
     const QueuedEdge queued = *first;
@@ -519,7 +493,6 @@ void CollapseQueue::merge(std::uint32_t a, std::uint32_t b, const Collapse& coll
     past_[a] = past_[a].about(collapse.position - mesh_.positions[a]) +
                past_[b].about(collapse.position - mesh_.positions[b]);
   }
-  if (!origins_.empty()) origins_[a] |= origins_[b];
   join_stars(a, b);
   target_[b] = a;
   mesh_.flags[a] |= mesh_.flags[b];

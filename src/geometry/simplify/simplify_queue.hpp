@@ -116,14 +116,13 @@ class CollapseQueue {
   std::uint64_t kept_topology() const { return kept_topology_; }
 
  private:
-  enum class Stop : std::uint8_t { met, nothing_left, held, too_rough, told };
+  enum class Stop : std::uint8_t { met, nothing_left, held, too_rough, opened, told };
 
   void remember();
-  void remember_closed();
   PastPlanes planes_at(std::uint32_t vertex) const;
   PastPlanes end_at(std::uint32_t vertex) const;
   void rank(double share);
-  void let_open_for_room(std::uint64_t last);
+  bool let_open_for_room(std::uint64_t last);
   Stop run(const SimplifyGoal& goal, const Progress& progress);
   void remember_piece(const QueuedEdge& queued, double cost);
   bool is_queued_otherwise(const QueuedEdge& queued);
@@ -168,7 +167,6 @@ class CollapseQueue {
   SmallPieces* pieces_ = nullptr;
   std::vector<std::uint32_t> target_;  // the vertex that a vertex has become
   std::vector<PastPlanes> past_;       // CollapseState::past
-  std::vector<std::uint8_t> origins_;  // CollapseState::origins; empty where the topology is kept
   // If an edge to another such vertex would end its piece and was judged: what all such edges of
   // the piece cost, and the one that is queued for them.
   struct PieceEnd {
@@ -208,6 +206,8 @@ class CollapseQueue {
   double paid_ = 0;
   CostCounts costs_;
   std::uint64_t collapses_ = 0;
+  std::uint64_t pinches_ = 0;           // since pieces were counted
+  std::uint64_t pinches_to_count_ = 0;  // until they are counted again
   std::uint64_t kept_topology_ = 0;
   std::uint64_t blocked_ = 0;  // of these: cheaper than max_cost_
   CostKey limit_ = 0;          // more expensive edges wait for the next ranking

@@ -24,12 +24,6 @@ inline bool may_lose_one(std::uint8_t flags) {
   return (flags & k_fixed) == 0 && (flags & (k_border | k_complex)) != 0;
 }
 
-/// What kind of piece a vertex is of, one byte each. A merged vertex has the flags of both.
-enum VertexOrigin : std::uint8_t {
-  k_was_closed = 1,  // of a component that had no border
-  k_pinched = 2      // of a piece pinched off, or of what it was pinched off from
-};
-
 /// Whether the vertex is on a border, and no line meets it there.
 inline bool is_on_plain_border(std::uint8_t flags) {
   return (flags & ~k_opened) == k_border;
