@@ -15,7 +15,7 @@ namespace {
 constexpr double k_more_headroom = 8;
 
 /// Parts held back by their topology may have at most this share of all triangles at the chosen
-/// level, and all parts together at most k_fair_excess times what is wanted: one level is 1.6.
+/// level, and all parts together at most k_fair_excess times what is wanted: a few levels.
 constexpr double k_fair_share = 0.1;
 constexpr double k_fair_excess = 2;
 /// At most this many collapses per triangle may be refused by the time the count is reached,
@@ -31,9 +31,9 @@ constexpr double k_fair_count = 1.2;
 constexpr double k_least_way = 1.25;
 
 /// If parts that continue to keep their topology come to more than this many levels above those
-/// that do not, it was not fair after all. On a circuit board they came to the top, and the error
-/// was seven times as great.
-constexpr std::int32_t k_levels_too_far = 2;
+/// that do not, which is 16 times the cost, it was not fair after all. On a circuit board they came
+/// to the top, and the error was seven times as great.
+constexpr std::int32_t k_levels_too_far = 4;
 
 /// At most this many triangles are compared with the result, to find which pieces and handles went.
 constexpr double k_most_compared = 4e6;
@@ -121,7 +121,7 @@ std::vector<std::uint32_t> ClimbStage::choose_level() {
   if (climbed_.empty()) return {};
   std::vector<ResultSummary> climbed;
   for (const std::uint32_t part : climbed_) climbed.push_back(results_.summaries[part]);
-  results_.level = common_level(climbed, static_cast<std::uint64_t>(jobs_.wanted()));
+  results_.level = common_level(climbed, static_cast<std::uint64_t>(jobs_.wanted_free()));
   if (results_.topology == TopologyMode::keep_while_fair) {
     const bool is_held = is_held_back();
     if (given_up_ && (is_held || is_too_far())) {
@@ -219,27 +219,28 @@ bool ClimbStage::is_held_back() const {
   }
   // Once it is kept after all, the finish may do what single parts could not.
   if (any && !keeps_after_all_ && least > static_cast<double>(jobs_.target())) return true;
-  return held > k_fair_share * all || (any && all > k_fair_excess * jobs_.wanted());
+  return held > k_fair_share * all || (any && all > k_fair_excess * jobs_.wanted_free());
 }
 
 /// Whether most of the collapses that the parts try will be refused.
 bool ClimbStage::is_much_refused() const {
   const auto all = static_cast<double>(results_.free_triangles(results_.level));
+  const double share = jobs_.wanted_free() / all;
   double refused = 0;
-  for (std::uint32_t p = 0; p < results_.summaries.size(); ++p) refused += refused_in(p, all);
+  for (std::uint32_t p = 0; p < results_.summaries.size(); ++p) refused += refused_in(p, share);
   return refused > k_fair_refused * all;
 }
 
-/// Refusals by the time all parts together, which have `all` free triangles at the common level,
-/// are reduced to what is wanted.
-double ClimbStage::refused_in(std::uint32_t part, double all) const {
+/// Refusals by the time all parts are reduced to this share of their free triangles at the common
+/// level.
+double ClimbStage::refused_in(std::uint32_t part, double share) const {
   const ResultSummary& result = results_.summaries[part];
   const Rung& rung = result.rungs[rung_at(result.rungs, results_.level)];
   // Beyond the end of other ladders too little is left to extrapolate from.
   const std::uint64_t left = result.end == LadderEnd::refusals
                                  ? free_triangles_at(result, results_.level)
                                  : rung.free_triangles;
-  return refused_by(rung, static_cast<double>(left) * jobs_.wanted() / all);
+  return refused_by(rung, share * static_cast<double>(left));
 }
 
 /// A sample of a stream has no topology to compare, and meshes far larger than the result are not

@@ -47,7 +47,7 @@ class ClimbStage {
   void stand_for_stream(std::uint32_t part);
   bool is_held_back() const;
   bool is_much_refused() const;
-  double refused_in(std::uint32_t part, double all) const;
+  double refused_in(std::uint32_t part, double share) const;
   void give_up_topology();
   bool was_fair() const;
   std::vector<std::uint32_t> keep_after_all();

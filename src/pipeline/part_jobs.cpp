@@ -80,6 +80,14 @@ double PartJobs::wanted() const {
   return provision(ratio()) * static_cast<double>(target());
 }
 
+double PartJobs::free_share() const {
+  double free = 0;
+  for (const PartEntry& part : manifest_.parts) {
+    free += estimate_free(part.triangles, part.boundary_vertices);
+  }
+  return free / static_cast<double>(std::max<std::uint64_t>(1, manifest_.triangles()));
+}
+
 /// A proof needs the whole unchanged stream in memory: it is climbed like a part.
 bool PartJobs::is_sampled(std::uint32_t part) const {
   return !options_.certify && !manifest_.samples.empty() &&

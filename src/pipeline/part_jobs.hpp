@@ -38,6 +38,11 @@ class PartJobs {
   double ratio() const;
   /// The triangles that the parts together keep for the finish to choose from.
   double wanted() const;
+  /// The share of the input's triangles that touch no boundary vertex. The others stay as they are
+  /// until the finish.
+  double free_share() const;
+  /// As many of those as are wanted.
+  double wanted_free() const { return wanted() * free_share(); }
   bool by_error() const { return options_.error.value > 0; }
   /// Whether a level must be found: the same ratio everywhere needs none.
   bool climbs_samples() const { return by_error() || options_.allocation == Allocation::threshold; }

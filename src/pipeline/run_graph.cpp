@@ -29,12 +29,12 @@ namespace {
 /// A level counts as finer if it has this many times the triangles, and is at most this many levels
 /// away.
 constexpr double k_finer = 1.2;
-constexpr std::int32_t k_most_finer = 6;
+constexpr std::int32_t k_most_finer = 12;
 
 /// Pieces are divided again once this many times the target is left, not counting seams: what is
 /// locked from then on is about as simple as the result.
 constexpr double k_before_finish = 1.02;
-constexpr std::int32_t k_most_levels = 60;
+constexpr std::int32_t k_most_levels = 120;
 
 class Run {
  public:

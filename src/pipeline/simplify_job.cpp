@@ -27,13 +27,17 @@ namespace {
 // end f64 | all triangles u64 | all samples u64 | bundles (bundle_list.hpp). Version 4 had no
 // appearances and labels, version 5 nothing to build, version 6 no certified error, version 7 no
 // end, version 8 no rung, version 9 no foreseen triangles; version 10 began at first rungs only;
-// version 11 did not always foresee.
-constexpr std::uint8_t k_climb_version = 12;
+// version 11 did not always foresee; version 12 had half as many levels.
+constexpr std::uint8_t k_climb_version = 13;
 constexpr std::uint64_t k_most_climb_samples = 100'000'000;
-constexpr std::int32_t k_top_level = 52;
-constexpr double k_mostly_free = 0.5;  // of triangles
+constexpr std::int32_t k_top_level = 104;
+constexpr double k_least_free_share = 0.25;
 /// A rung with more than this share of the one before is kept only if it is the last.
 constexpr double k_most_of_rung = 0.98;
+
+/// Above this many times the even share of the target, every second level is enough: no part of
+/// average density is needed there.
+constexpr std::uint64_t k_shares_of_fine = 5;
 
 /// A ladder ends where this many collapses per triangle are expected to be refused: some multiple
 /// of what is fair, as the prediction is made from further away than in the sink.
@@ -122,7 +126,7 @@ class LadderBuilder {
   std::int32_t reached() const { return level_of(simplifier_.pass_cost(), parameters_.cost_unit); }
 
   void climb(std::int32_t level) {
-    for (; level <= k_top_level && may_go_on(); ++level) {
+    for (; level <= k_top_level && may_go_on(); level = next_level(level)) {
       reduce({.triangles = floor(), .max_cost = level_cost(level, parameters_.cost_unit)});
       if (simplifier_.is_held_by_topology()) return;
       if (is_enough()) end_ = LadderEnd::enough;
@@ -135,6 +139,11 @@ class LadderBuilder {
       }
       if (is_last) return;
     }
+  }
+  std::int32_t next_level(std::int32_t level) const {
+    const bool is_far =
+        simplifier_.free_triangles() > k_shares_of_fine * parameters_.share_triangles;
+    return is_far ? (level / 2 + 1) * 2 : level + 1;
   }
   bool may_go_on() const {
     return simplifier_.triangles() > floor() && simplifier_.free_triangles() > 0;
@@ -157,15 +166,12 @@ class LadderBuilder {
   }
 
   /// Whether the next rung would have less than what is wanted: it and those after it are not made.
-  /// If many vertices are locked, counts fall anyway. If the topology is kept at any cost, some
-  /// parts may have to make up for others.
+  /// If the topology is kept at any cost, some parts may have to make up for others.
   bool is_enough() const {
-    const std::uint64_t left = simplifier_.triangles();
     const bool may_be_stuck = parameters_.lines.topology == TopologyMode::keep;
-    return left > floor() && left <= parameters_.end_triangles &&
-           !(may_be_stuck && simplifier_.is_slowed_by_topology()) &&
-           static_cast<double>(simplifier_.free_triangles()) >
-               k_mostly_free * static_cast<double>(left);
+    return simplifier_.triangles() > floor() &&
+           simplifier_.free_triangles() <= parameters_.end_triangles &&
+           !(may_be_stuck && simplifier_.is_slowed_by_topology());
   }
 
   void reduce(const SimplifyGoal& goal) {
@@ -328,32 +334,39 @@ SimplifyParameters decode_parameters(std::string_view bytes) {
   return parameters;
 }
 
+double estimate_free(std::uint64_t triangles, std::uint64_t boundary_vertices) {
+  const auto all = static_cast<double>(triangles);
+  return std::max(k_least_free_share * all, all - 2 * static_cast<double>(boundary_vertices));
+}
+
 void set_share(SimplifyParameters& parameters, const ShareRule& rule,
                std::uint64_t shared_triangles, std::uint32_t shared_boundary) {
   const auto triangles = static_cast<double>(shared_triangles);
   const double share = rule.ratio * triangles;
   const double kept = share * provision(rule.ratio);
+  const double kept_free =
+      rule.ratio * provision(rule.ratio) * estimate_free(shared_triangles, shared_boundary);
   double start = share;
   double end = 0;
   if (parameters.allocation == Allocation::threshold) {
     start = rule.headroom * kept / 2 + 2.0 * shared_boundary;
-    end = rule.end * kept;
+    end = rule.end * kept_free;
     if (start > 0.7 * triangles) {
       start = triangles;
-      end = std::min(end, kept);  // the rung after the unchanged part is unpredictable
+      end = std::min(end, kept_free);  // the rung after the unchanged part is unpredictable
     }
   }
   parameters.share_triangles = static_cast<std::uint64_t>(share);
   parameters.start_triangles = static_cast<std::uint64_t>(start);
   parameters.end_triangles = static_cast<std::uint64_t>(end);
-  parameters.foreseen_triangles = static_cast<std::uint64_t>(kept);
+  parameters.foreseen_triangles = static_cast<std::uint64_t>(kept_free);
   const auto all = static_cast<double>(std::max<std::uint64_t>(1, rule.all_triangles));
   parameters.samples = static_cast<std::uint64_t>(
       std::ceil(triangles / all * static_cast<double>(rule.all_samples)));
 }
 
 double level_cost(std::int32_t level, double unit) {
-  return std::ldexp(unit, 2 * level);
+  return std::ldexp(unit, level);
 }
 
 std::int32_t level_of(double cost, double unit) {

@@ -36,7 +36,8 @@ void SweepStage::take(const JobGraph& graph, const std::vector<std::uint32_t>& s
 
 bool SweepStage::is_too_coarse() const {
   return jobs_.climbs_samples() && results_.level >= 0 &&
-         results_.free_triangles(results_.level) < jobs_.target();
+         static_cast<double>(results_.free_triangles(results_.level)) <
+             jobs_.free_share() * static_cast<double>(jobs_.target());
 }
 
 bool SweepStage::is_too_far(std::uint32_t stream) const {

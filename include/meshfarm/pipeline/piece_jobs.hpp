@@ -40,7 +40,7 @@ struct SectionRef {
 };
 
 /// Triangles are counted at the same costs in all pieces, at this many steps per level.
-inline constexpr std::int32_t k_steps_a_level = 4;
+inline constexpr std::int32_t k_steps_a_level = 2;
 double step_cost(std::int32_t step, double unit);
 
 /// How a piece is weighed: it is simplified step by step to a share of its triangles at the first

@@ -43,9 +43,9 @@ struct SimplifyParameters {
   Allocation allocation = Allocation::threshold;
   std::uint64_t start_triangles = 0;  // the first rung: at most this many triangles
   std::uint64_t share_triangles = 0;  // the part's even share of the target
-  std::uint64_t end_triangles = 0;    // the first rung with at most this many may be the last
-  /// The triangles wanted of the part. The ladder ends where too many collapses are expected to be
-  /// refused by then to keep the topology; 0: no such check.
+  std::uint64_t end_triangles = 0;    // the first rung with at most this many free may be the last
+  /// The free triangles wanted of the part. The ladder ends where too many collapses are expected
+  /// to be refused by then to keep the topology; 0: no such check.
   std::uint64_t foreseen_triangles = 0;
   std::uint64_t samples = 0;  // points of the part to measure the final error by
   double cost_unit = 0;       // cost of level 0
@@ -57,6 +57,10 @@ struct SimplifyParameters {
   std::optional<RungOfLadder> from;  // where set: the input is this rung of a ladder of the part
 };
 
+/// Estimates how many triangles of a part touch no boundary vertex, at least a quarter of all: two
+/// per boundary vertex do.
+double estimate_free(std::uint64_t triangles, std::uint64_t boundary_vertices);
+
 /// Sets first rung, share, last rung and samples of a part.
 void set_share(SimplifyParameters& parameters, const ShareRule& rule,
                std::uint64_t shared_triangles, std::uint32_t shared_boundary);
@@ -67,10 +71,10 @@ SimplifyParameters decode_parameters(std::string_view bytes);
 /// The level of a rung that is the unchanged part.
 inline constexpr std::int32_t k_input_level = -1;
 
-/// Cost levels rise by a factor of four from `unit`; on a smooth surface that is a factor of 1.6 in
+/// Cost levels rise by a factor of two from `unit`; on a smooth surface that is a factor of 1.26 in
 /// triangles, as a cost is an area times a squared distance.
 double level_cost(std::int32_t level, double unit);
-inline constexpr double k_level_step = 1.6;
+inline constexpr double k_level_step = 1.26;
 /// The lowest level, 0 or above, whose cost is at least `cost`.
 std::int32_t level_of(double cost, double unit);
 /// The cost of level 0 of a mesh with this diagonal: distances of 2^-50 of it.

@@ -22,6 +22,7 @@ using namespace meshfarm;
 namespace {
 
 constexpr std::uint32_t k_boundary = 12;
+constexpr std::uint64_t k_share = 100;
 
 /// `count` spheres in a row, more than the goals leave triangles for.
 Part part_of_spheres(int count) {
@@ -40,7 +41,7 @@ Part part_of_spheres(int count) {
 SimplifyParameters parameters_of(TopologyMode topology) {
   SimplifyParameters parameters;
   parameters.start_triangles = 400;
-  parameters.share_triangles = 100;
+  parameters.share_triangles = k_share;
   parameters.samples = 500;
   parameters.cost_unit = cost_unit(100);
   parameters.lines.topology = topology;
@@ -120,6 +121,23 @@ TEST_CASE("a ladder has no rungs that are hardly smaller than the ones before, e
     CHECK(static_cast<double>(rungs[i].triangles) <
           0.98 * static_cast<double>(rungs[i - 1].triangles));
   }
+}
+
+TEST_CASE("levels are finer near what is wanted of the part") {
+  Part part;
+  part.mesh = test::icosphere(5);
+  part.positions = PositionType::float64;
+  const ClimbBench bench(part);
+  const std::vector<Rung> rungs =
+      bench.climb(TopologyMode::keep, 0, 0, part.mesh.triangles.size()).summary.rungs;
+  REQUIRE(rungs.size() > 8);
+  for (std::size_t i = 2; i + 1 < rungs.size(); ++i) {
+    CAPTURE(rungs[i].free_triangles);
+    const bool is_far = rungs[i].free_triangles > 5 * k_share;
+    const std::int32_t step = rungs[i + 1].level - rungs[i].level;
+    CHECK((is_far ? step == 2 && rungs[i].level % 2 == 0 : step == 1));
+  }
+  CHECK(rungs[2].free_triangles > 10 * k_share);
 }
 
 TEST_CASE("a ladder that may have to give up its topology begins where nothing was refused") {
