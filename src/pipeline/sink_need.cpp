@@ -5,6 +5,7 @@
 
 #include <meshfarm/pipeline/budget.hpp>
 #include <meshfarm/pipeline/finished_pieces.hpp>
+#include <meshfarm/pipeline/simplify_job.hpp>
 #include <meshfarm/pipeline/sink_need.hpp>
 #include <meshfarm/util/errors.hpp>
 
@@ -19,8 +20,6 @@ constexpr std::uint64_t k_most_triangles = UINT32_MAX / 3 - 1;
 /// The stitched mesh and its simplifier: measured, of the whole process, 140 to 180.
 constexpr std::uint64_t k_bytes_per_triangle = 180;
 constexpr std::uint64_t k_process_bytes = std::uint64_t{32} << 20;
-/// All parts use the last level with enough triangles: it has up to one step too many.
-constexpr double k_half_a_step = 1.25;
 
 std::string counted(std::uint64_t triangles) {
   return triangles < 10'000'000 ? std::to_string(triangles)
@@ -52,9 +51,10 @@ std::optional<SinkNeed> sink_need(const Manifest& manifest, const RunOptions& op
   if (options.error.value > 0) return std::nullopt;
   const auto all = static_cast<double>(manifest.triangles());
   const auto target = static_cast<double>(target_triangles(manifest, options));
+  // All parts use the last level with enough triangles: it has up to one step too many.
   const double times = options.allocation == Allocation::uniform
                            ? 1.0
-                           : k_half_a_step * provision(std::min(1.0, target / std::max(1.0, all)));
+                           : k_level_step * provision(std::min(1.0, target / std::max(1.0, all)));
   const double stitched =
       std::min(all, times * target + static_cast<double>(manifest.boundary_triangles));
   const auto triangles = static_cast<std::uint64_t>(stitched);
