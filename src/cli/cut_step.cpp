@@ -124,8 +124,7 @@ std::unique_ptr<MeshSource> near_merged(std::unique_ptr<MeshSource> source, cons
   if (distance == 0) return source;
   if (words.where == "farm") {
     throw UsageError(step.input +
-                     ": cannot be cut by the farm: corners that belong together are up "
-                     "to " +
+                     ": cannot be cut by the farm: corners that belong together are up to " +
                      text_of(distance) + " apart; --cut here merges them, --weld exact does not");
   }
   ProgressPrinter printer(step.talk.progress());

@@ -265,7 +265,7 @@ double OrderedEnd::share_paid_before(const CollapseQueue& other) const {
   return std::min(1 / std::max(times * times - 1, 1e-6), of_first / other.paid());
 }
 
-/// Whether keeping the topology costs much more than simplifying it.
+/// Whether keeping the topology leads much farther from the mesh than simplifying it.
 bool OrderedEnd::is_unfair(const CollapseQueue& other, const SimplifyGoal& goal) const {
   const CollapseQueue& kept = trial_->queue;
   if (bound_ != nullptr) {
